@@ -1,0 +1,72 @@
+"""Materials as glTF 2.0 describes them: factors, textures, alpha mode.
+
+A material here is what the file says. What a shader needs to know of it is
+its description (:mod:`moka.material.description`), what the GPU reads of it
+is its parameter row (:mod:`moka.material.parameters`).
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from moka.commands.descriptors import SamplerDescriptor
+from moka.core.encoded_image import EncodedImage
+
+__all__ = ["AlphaMode", "Material", "Texture", "TextureTransform"]
+
+
+class AlphaMode(Enum):
+    """How the alpha of the base colour is used (glTF 2.0, 3.9.4)."""
+
+    OPAQUE = "OPAQUE"
+    MASK = "MASK"
+    BLEND = "BLEND"
+
+
+@dataclass(frozen=True, slots=True)
+class TextureTransform:
+    """KHR_texture_transform: uv' = translation * rotation * scale * uv.
+
+    ``rotation`` is counter-clockwise in radians as the extension defines it.
+    """
+
+    offset: tuple[float, float] = (0.0, 0.0)
+    rotation: float = 0.0
+    scale: tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Texture:
+    """An image, how it is sampled, and with which texture coordinates."""
+
+    image: EncodedImage
+    sampler: SamplerDescriptor = SamplerDescriptor()
+    uv_set: int = 0
+    transform: TextureTransform | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Material:
+    """A metallic-roughness material of glTF 2.0.
+
+    Factors are linear Rec.709; ``emissive_factor`` already holds the
+    strength of KHR_materials_emissive_strength. Base colour and emissive
+    textures are sRGB-encoded, the others are data: metalness is blue and
+    roughness green of one texture, occlusion is red.
+    """
+
+    name: str = ""
+    base_colour_factor: tuple[float, float, float, float] = (1, 1, 1, 1)
+    metallic_factor: float = 1.0
+    roughness_factor: float = 1.0
+    normal_scale: float = 1.0
+    occlusion_strength: float = 1.0
+    emissive_factor: tuple[float, float, float] = (0, 0, 0)
+    base_colour_texture: Texture | None = None
+    metallic_roughness_texture: Texture | None = None
+    normal_texture: Texture | None = None
+    occlusion_texture: Texture | None = None
+    emissive_texture: Texture | None = None
+    alpha_mode: AlphaMode = AlphaMode.OPAQUE
+    alpha_cutoff: float = 0.5
+    double_sided: bool = False
+    unlit: bool = False
