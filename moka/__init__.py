@@ -1,0 +1,114 @@
+"""A physically based renderer for glTF scenes, in a window or headless.
+
+``moka.render`` turns a model into an image, ``moka.App`` and ``moka.run``
+are for programs with a loop, and the other names are the parts they use.
+A name is imported when it is first used (PEP 562), so that ``import moka``
+costs a few milliseconds and a headless render never loads a window.
+"""
+
+from importlib import import_module
+
+from moka.version import __version__
+
+# Type checkers take this name for true; `typing` itself would cost more
+# than the rest of this module.
+TYPE_CHECKING = False
+
+if TYPE_CHECKING:
+    from moka.app.application import App as App
+    from moka.app.render import render as render
+    from moka.app.run import run as run
+    from moka.commands.command_list import CommandList as CommandList
+    from moka.core.errors import CommandError as CommandError
+    from moka.core.errors import ContextError as ContextError
+    from moka.core.errors import DeviceError as DeviceError
+    from moka.core.errors import EnvironmentMapError as EnvironmentMapError
+    from moka.core.errors import ImageFileError as ImageFileError
+    from moka.core.errors import ModelError as ModelError
+    from moka.core.errors import MokaError as MokaError
+    from moka.core.errors import OptionError as OptionError
+    from moka.core.errors import ShaderError as ShaderError
+    from moka.core.image import Image as Image
+    from moka.graphics.device import GraphicsDevice as GraphicsDevice
+    from moka.lighting.environment import Environment as Environment
+    from moka.lighting.environment import load_environment as load_environment
+    from moka.material.material import Material as Material
+    from moka.model import Model as Model
+    from moka.model import load_model as load_model
+    from moka.model import save_model as save_model
+    from moka.renderer.renderer import Renderer as Renderer
+    from moka.scene.camera import Camera as Camera
+    from moka.scene.scene import Scene as Scene
+    from moka.scene.transform import Transform as Transform
+
+__all__ = [
+    "App",
+    "Camera",
+    "CommandError",
+    "CommandList",
+    "ContextError",
+    "DeviceError",
+    "Environment",
+    "EnvironmentMapError",
+    "GraphicsDevice",
+    "Image",
+    "ImageFileError",
+    "Material",
+    "Model",
+    "ModelError",
+    "MokaError",
+    "OptionError",
+    "Renderer",
+    "Scene",
+    "ShaderError",
+    "Transform",
+    "__version__",
+    "load_environment",
+    "load_model",
+    "render",
+    "run",
+    "save_model",
+]
+
+_HOMES = {
+    "App": "moka.app.application",
+    "Camera": "moka.scene.camera",
+    "CommandError": "moka.core.errors",
+    "CommandList": "moka.commands.command_list",
+    "ContextError": "moka.core.errors",
+    "DeviceError": "moka.core.errors",
+    "Environment": "moka.lighting.environment",
+    "EnvironmentMapError": "moka.core.errors",
+    "GraphicsDevice": "moka.graphics.device",
+    "Image": "moka.core.image",
+    "ImageFileError": "moka.core.errors",
+    "Material": "moka.material.material",
+    "Model": "moka.model",
+    "ModelError": "moka.core.errors",
+    "MokaError": "moka.core.errors",
+    "OptionError": "moka.core.errors",
+    "Renderer": "moka.renderer.renderer",
+    "Scene": "moka.scene.scene",
+    "ShaderError": "moka.core.errors",
+    "Transform": "moka.scene.transform",
+    "load_environment": "moka.lighting.environment",
+    "load_model": "moka.model",
+    "render": "moka.app.render",
+    "run": "moka.app.run",
+    "save_model": "moka.model",
+}
+
+
+if not TYPE_CHECKING:  # or a checker would accept any name at all
+
+    def __getattr__(name: str) -> object:
+        home = _HOMES.get(name)
+        if home is None:
+            raise AttributeError(f"module 'moka' has no attribute {name!r}")
+        value = getattr(import_module(home), name)
+        globals()[name] = value
+        return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
