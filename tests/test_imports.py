@@ -1,0 +1,70 @@
+"""What is imported when, and what it costs.
+
+A headless render must not pay for a window, ``moka --help`` not for NumPy,
+and ``import moka`` for next to nothing.
+"""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+WINDOW = {"glfw", "imgui_bundle", "moderngl_window", "pyglet"}
+TOOLS = {"matplotlib", "pytest", "scipy"}
+WRITER = {"dataclasses_json", "pygltflib"}
+
+
+def import_log(*arguments: str) -> str:
+    """The log of ``python -X importtime`` with ``arguments``."""
+    result = subprocess.run(
+        [sys.executable, "-X", "importtime", *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return result.stderr
+
+
+def imported(log: str) -> set[str]:
+    """The top-level packages that an import log names."""
+    names = re.findall(r"\| +([\w.]+)$", log, re.MULTILINE)
+    return {name.partition(".")[0] for name in names}
+
+
+def milliseconds(log: str, module: str) -> float:
+    """Time that importing ``module`` took, what it imports included."""
+    pattern = rf"\| +(\d+) \| +{re.escape(module)}$"
+    (microseconds,) = re.findall(pattern, log, re.MULTILINE)
+    return int(microseconds) / 1000.0
+
+
+def test_import_moka_takes_less_than_30_ms() -> None:
+    logs = [import_log("-c", "import moka") for _ in range(5)]
+    assert min(milliseconds(log, "moka") for log in logs) < 30.0
+
+
+def test_import_moka_loads_no_other_package() -> None:
+    log = import_log("-c", "import moka")
+    assert "moka" in imported(log)
+    heavy = {"numpy", "moderngl", "PIL", "OpenEXR", "pyglm", "msgspec"}
+    assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER)
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["render", "--help"]])
+def test_help_does_not_load_numpy(arguments: list[str]) -> None:
+    log = import_log("-m", "moka", *arguments)
+    assert "moka" in imported(log)
+    heavy = {"numpy", "moderngl", "PIL", "OpenEXR", "pyglm", "msgspec"}
+    assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER)
+
+
+@pytest.mark.gpu
+def test_a_headless_png_pays_for_nothing_else(tmp_path: Path) -> None:
+    out = tmp_path / "demo.png"
+    log = import_log("-m", "moka", "render", "--size", "16x16", "-o", str(out))
+    assert out.exists()
+    loaded = imported(log)
+    assert {"numpy", "moderngl", "PIL"} <= loaded
+    assert not loaded & (WINDOW | TOOLS | WRITER | {"OpenEXR"})
