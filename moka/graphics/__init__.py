@@ -1,0 +1,5 @@
+"""GraphicsDevice, its render thread, programs and shader source."""
+
+from moka.graphics.device import Frame, GraphicsDevice
+
+__all__ = ["Frame", "GraphicsDevice"]

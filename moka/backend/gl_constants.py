@@ -1,0 +1,193 @@
+"""GL enumerants, and how moka's descriptors map to them."""
+
+from moka.commands.descriptors import (
+    BlendState,
+    CompareFunction,
+    CullMode,
+    Filter,
+    IndexType,
+    MipmapMode,
+    PixelFormat,
+    Topology,
+    Wrap,
+)
+
+BACK = 0x0405
+BLEND = 0x0BE2
+CCW = 0x0901
+CLAMP_TO_EDGE = 0x812F
+COLOR = 0x1800
+COLOR_ATTACHMENT0 = 0x8CE0
+COLOR_BUFFER_BIT = 0x4000
+CULL_FACE = 0x0B44
+CW = 0x0900
+DEPTH = 0x1801
+DEPTH_ATTACHMENT = 0x8D00
+DEPTH_COMPONENT = 0x1902
+DEPTH_TEST = 0x0B71
+DRAW_FRAMEBUFFER = 0x8CA9
+DRAW_INDIRECT_BUFFER = 0x8F3F
+FILL = 0x1B02
+FLOAT = 0x1406
+FRAMEBUFFER = 0x8D40
+FRAMEBUFFER_COMPLETE = 0x8CD5
+FRAMEBUFFER_SRGB = 0x8DB9
+FRONT = 0x0404
+FRONT_AND_BACK = 0x0408
+FUNC_ADD = 0x8006
+HALF_FLOAT = 0x140B
+LINE = 0x1B01
+LINEAR = 0x2601
+LOWER_LEFT = 0x8CA1
+MULTISAMPLE = 0x809D
+NEAREST = 0x2600
+NEGATIVE_ONE_TO_ONE = 0x935E
+NONE = 0
+PACK_ALIGNMENT = 0x0D05
+PROGRAM_POINT_SIZE = 0x8642
+READ_FRAMEBUFFER = 0x8CA8
+RENDERBUFFER = 0x8D41
+SAMPLE_ALPHA_TO_COVERAGE = 0x809E
+SCISSOR_TEST = 0x0C11
+TEXTURE0 = 0x84C0
+TEXTURE_2D = 0x0DE1
+TEXTURE_BASE_LEVEL = 0x813C
+TEXTURE_CUBE_MAP = 0x8513
+TEXTURE_CUBE_MAP_POSITIVE_X = 0x8515
+TEXTURE_CUBE_MAP_SEAMLESS = 0x884F
+TEXTURE_MAG_FILTER = 0x2800
+TEXTURE_MAX_ANISOTROPY = 0x84FE
+TEXTURE_MAX_LEVEL = 0x813D
+TEXTURE_MIN_FILTER = 0x2801
+TEXTURE_WRAP_S = 0x2802
+TEXTURE_WRAP_T = 0x2803
+UNIFORM_BUFFER = 0x8A11
+UNPACK_ALIGNMENT = 0x0CF5
+UNSIGNED_BYTE = 0x1401
+UNSIGNED_INT = 0x1405
+UNSIGNED_SHORT = 0x1403
+ZERO_TO_ONE = 0x935F
+
+TOPOLOGY = {
+    Topology.POINTS: 0,
+    Topology.LINES: 1,
+    Topology.LINE_LOOP: 2,
+    Topology.LINE_STRIP: 3,
+    Topology.TRIANGLES: 4,
+    Topology.TRIANGLE_STRIP: 5,
+    Topology.TRIANGLE_FAN: 6,
+}
+
+INDEX_TYPE = {
+    IndexType.UINT8: UNSIGNED_BYTE,
+    IndexType.UINT16: UNSIGNED_SHORT,
+    IndexType.UINT32: UNSIGNED_INT,
+}
+
+COMPARE = {
+    CompareFunction.LESS: 0x0201,
+    CompareFunction.LESS_EQUAL: 0x0203,
+    CompareFunction.EQUAL: 0x0202,
+    CompareFunction.GREATER: 0x0204,
+    CompareFunction.GREATER_EQUAL: 0x0206,
+    CompareFunction.ALWAYS: 0x0207,
+}
+
+CULL = {CullMode.BACK: BACK, CullMode.FRONT: FRONT}
+
+# Source and destination factors for colour, then for alpha. Alpha is
+# coverage, so it always accumulates as "over".
+_ONE = 1
+_SRC_ALPHA = 0x0302
+_ONE_MINUS_SRC_ALPHA = 0x0303
+BLEND_FACTORS = {
+    BlendState.PREMULTIPLIED: (
+        _ONE,
+        _ONE_MINUS_SRC_ALPHA,
+        _ONE,
+        _ONE_MINUS_SRC_ALPHA,
+    ),
+    BlendState.ALPHA: (
+        _SRC_ALPHA,
+        _ONE_MINUS_SRC_ALPHA,
+        _ONE,
+        _ONE_MINUS_SRC_ALPHA,
+    ),
+    BlendState.ADDITIVE: (_ONE, _ONE, _ONE, _ONE),
+}
+
+WRAP = {
+    Wrap.REPEAT: 0x2901,
+    Wrap.MIRRORED_REPEAT: 0x8370,
+    Wrap.CLAMP_TO_EDGE: CLAMP_TO_EDGE,
+}
+
+MAGNIFY = {Filter.NEAREST: NEAREST, Filter.LINEAR: LINEAR}
+
+MINIFY = {
+    (Filter.NEAREST, MipmapMode.NONE): NEAREST,
+    (Filter.LINEAR, MipmapMode.NONE): LINEAR,
+    (Filter.NEAREST, MipmapMode.NEAREST): 0x2700,
+    (Filter.LINEAR, MipmapMode.NEAREST): 0x2701,
+    (Filter.NEAREST, MipmapMode.LINEAR): 0x2702,
+    (Filter.LINEAR, MipmapMode.LINEAR): 0x2703,
+}
+
+_RED, _RG, _RGB, _RGBA = 0x1903, 0x8227, 0x1907, 0x1908
+_BY_CHANNELS = {1: _RED, 2: _RG, 3: _RGB, 4: _RGBA}
+_RED_INTEGER = 0x8D94
+_TYPES = {
+    "u1": UNSIGNED_BYTE,
+    "u2": UNSIGNED_SHORT,
+    "f2": HALF_FLOAT,
+    "f4": FLOAT,
+    "u4": UNSIGNED_INT,
+}
+_INTERNAL = {
+    PixelFormat.R8: 0x8229,
+    PixelFormat.RG8: 0x822B,
+    PixelFormat.RGB8: 0x8051,
+    PixelFormat.RGBA8: 0x8058,
+    PixelFormat.SRGB8: 0x8C41,
+    PixelFormat.SRGB8_ALPHA8: 0x8C43,
+    PixelFormat.R16: 0x822A,
+    PixelFormat.RG16: 0x822C,
+    PixelFormat.RGB16: 0x8054,
+    PixelFormat.RGBA16: 0x805B,
+    PixelFormat.R16F: 0x822D,
+    PixelFormat.RG16F: 0x822F,
+    PixelFormat.RGB16F: 0x881B,
+    PixelFormat.RGBA16F: 0x881A,
+    PixelFormat.R32F: 0x822E,
+    PixelFormat.RG32F: 0x8230,
+    PixelFormat.RGB32F: 0x8815,
+    PixelFormat.RGBA32F: 0x8814,
+    PixelFormat.R32UI: 0x8236,
+    PixelFormat.DEPTH24: 0x81A6,
+    PixelFormat.DEPTH32F: 0x8CAC,
+}
+
+
+def pixel_format(pixels: PixelFormat) -> tuple[int, int, int]:
+    """Internal format, transfer format and transfer type."""
+    return (
+        _INTERNAL[pixels],
+        transfer_format(pixels),
+        _TYPES[pixels.dtype],
+    )
+
+
+def transfer_format(pixels: PixelFormat) -> int:
+    """Which channels host memory holds."""
+    if pixels.is_depth:
+        return DEPTH_COMPONENT
+    if pixels is PixelFormat.R32UI:
+        return _RED_INTEGER
+    return _BY_CHANNELS[pixels.channels]
+
+
+def readback_format(channels: int, dtype: str) -> tuple[int, int]:
+    """Transfer format and type of pixels read from a framebuffer."""
+    if dtype == "u4":
+        return _RED_INTEGER, UNSIGNED_INT
+    return _BY_CHANNELS[channels], _TYPES[dtype]

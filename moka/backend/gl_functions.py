@@ -1,0 +1,153 @@
+"""The GL entry points that ModernGL has no words for, through ctypes.
+
+ModernGL makes the context, the programs, the buffers and the vertex arrays.
+It cannot attach a cube face or a mip level to a framebuffer, give a texture
+its levels one by one, mirror a wrap or draw with a base instance, and it
+holds Python's lock in every call. A call through ``ctypes.CFUNCTYPE``
+releases the lock, so that decoding threads run on while the driver copies a
+texture or compiles at the first draw. All such calls stand here.
+"""
+
+from collections.abc import Callable
+from ctypes import (
+    c_float,
+    c_int,
+    c_ssize_t,
+    c_ubyte,
+    c_uint,
+    c_void_p,
+)
+from typing import Any
+
+__all__ = ["Functions"]
+
+_INT = c_int
+_UINT = c_uint
+_SIZE = c_ssize_t
+_POINTER = c_void_p
+_FLOAT = c_float
+_BOOL = c_ubyte
+
+# Name without its gl prefix: result type, argument types.
+_SIGNATURES: dict[str, tuple[Any, ...]] = {
+    "ActiveTexture": (None, _UINT),
+    "BindBuffer": (None, _UINT, _UINT),
+    "BindBufferRange": (None, _UINT, _UINT, _UINT, _SIZE, _SIZE),
+    "BindFramebuffer": (None, _UINT, _UINT),
+    "BindRenderbuffer": (None, _UINT, _UINT),
+    "BindSampler": (None, _UINT, _UINT),
+    "BindTexture": (None, _UINT, _UINT),
+    "BindVertexArray": (None, _UINT),
+    "BlendEquation": (None, _UINT),
+    "BlendFuncSeparate": (None, _UINT, _UINT, _UINT, _UINT),
+    "BlitFramebuffer": (None, *[_INT] * 8, _UINT, _UINT),
+    "CheckFramebufferStatus": (_UINT, _UINT),
+    "ClearBufferfv": (None, _UINT, _INT, _POINTER),
+    "ClipControl": (None, _UINT, _UINT),
+    "ColorMask": (None, _BOOL, _BOOL, _BOOL, _BOOL),
+    "CullFace": (None, _UINT),
+    "DeleteFramebuffers": (None, _INT, _POINTER),
+    "DeleteRenderbuffers": (None, _INT, _POINTER),
+    "DeleteSamplers": (None, _INT, _POINTER),
+    "DeleteTextures": (None, _INT, _POINTER),
+    "DepthFunc": (None, _UINT),
+    "DepthMask": (None, _BOOL),
+    "Disable": (None, _UINT),
+    "DrawArraysInstanced": (None, _UINT, _INT, _INT, _INT),
+    "DrawBuffers": (None, _INT, _POINTER),
+    "DrawElementsInstancedBaseVertex": (
+        None,
+        _UINT,
+        _INT,
+        _UINT,
+        _POINTER,
+        _INT,
+        _INT,
+    ),
+    "Enable": (None, _UINT),
+    "Finish": (None,),
+    "FramebufferRenderbuffer": (None, _UINT, _UINT, _UINT, _UINT),
+    "FramebufferTexture2D": (None, _UINT, _UINT, _UINT, _UINT, _INT),
+    "FrontFace": (None, _UINT),
+    "GenFramebuffers": (None, _INT, _POINTER),
+    "GenRenderbuffers": (None, _INT, _POINTER),
+    "GenSamplers": (None, _INT, _POINTER),
+    "GenTextures": (None, _INT, _POINTER),
+    "GenerateMipmap": (None, _UINT),
+    "GetError": (_UINT,),
+    "GetTexImage": (None, _UINT, _INT, _UINT, _UINT, _POINTER),
+    "MultiDrawArraysIndirect": (None, _UINT, _POINTER, _INT, _INT),
+    "MultiDrawElementsIndirect": (
+        None,
+        _UINT,
+        _UINT,
+        _POINTER,
+        _INT,
+        _INT,
+    ),
+    "PixelStorei": (None, _UINT, _INT),
+    "PolygonMode": (None, _UINT, _UINT),
+    "ReadBuffer": (None, _UINT),
+    "ReadPixels": (None, *[_INT] * 4, _UINT, _UINT, _POINTER),
+    "RenderbufferStorageMultisample": (
+        None,
+        _UINT,
+        _INT,
+        _UINT,
+        _INT,
+        _INT,
+    ),
+    "SamplerParameterf": (None, _UINT, _UINT, _FLOAT),
+    "SamplerParameteri": (None, _UINT, _UINT, _INT),
+    "Scissor": (None, _INT, _INT, _INT, _INT),
+    "TexImage2D": (
+        None,
+        _UINT,
+        _INT,
+        _INT,
+        _INT,
+        _INT,
+        _INT,
+        _UINT,
+        _UINT,
+        _POINTER,
+    ),
+    "TexParameteri": (None, _UINT, _UINT, _INT),
+    "UseProgram": (None, _UINT),
+    "Viewport": (None, _INT, _INT, _INT, _INT),
+}
+
+
+class Functions:
+    """GL functions as attributes without their prefix: ``gl.Finish()``.
+
+    ``load`` returns the ctypes function of an entry point; see
+    :meth:`moka.backend.contexts.GraphicsContext.function`.
+    """
+
+    def __init__(self, load: Callable[..., Any]) -> None:
+        self._load = load
+
+    def __getattr__(self, name: str) -> Any:
+        signature = _SIGNATURES.get(name)
+        if signature is None:
+            raise AttributeError(name)
+        function = self._load("gl" + name, *signature)
+        setattr(self, name, function)
+        return function
+
+    def make(self, kind: str) -> int:
+        """The name of one new object: ``make("Textures")``."""
+        name = c_uint()
+        getattr(self, "Gen" + kind)(1, _address(name))
+        return name.value
+
+    def delete(self, kind: str, name: int) -> None:
+        """Delete one object: ``delete("Textures", name)``."""
+        getattr(self, "Delete" + kind)(1, _address(c_uint(name)))
+
+
+def _address(value: c_uint) -> Any:
+    from ctypes import addressof
+
+    return addressof(value)

@@ -1,0 +1,480 @@
+"""The backend over ModernGL: executes recordings on the render thread.
+
+GL 3.3 core is enough. Where the driver has multi-draw-indirect with a base
+instance (4.3), a batch of any size is one call; below, it is one call per
+mesh, with the instance attributes pointed at its rows.
+"""
+
+import contextlib
+from collections.abc import Callable
+from ctypes import byref, c_float
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.backend import gl_constants as c
+from moka.backend.batching import INDIRECT, Batches, MeshTable, merge_draws
+from moka.backend.contexts import GraphicsContext
+from moka.backend.gl_functions import Functions
+from moka.backend.gl_programs import (
+    Bindings,
+    BlockRegistry,
+    GlProgram,
+    VertexSource,
+    bind_instances,
+    make_vertex_array,
+    match_bindings,
+)
+from moka.backend.gl_state import StateCache
+from moka.backend.gl_textures import GlFramebuffer, GlTexture, SamplerCache
+from moka.backend.protocol import BackendInfo, FrameCounters, TextureData
+from moka.commands.command_list import DrawSpan, Recording
+from moka.commands.commands import (
+    BindFramebuffer,
+    Clear,
+    Command,
+    FillBuffer,
+    GenerateMipmaps,
+    ReadPixels,
+    ResolveFramebuffer,
+    SetScissor,
+    SetViewport,
+)
+from moka.commands.descriptors import (
+    BindGroupDescriptor,
+    BufferDescriptor,
+    FramebufferDescriptor,
+    MeshDescriptor,
+    ProgramDescriptor,
+    ShaderText,
+    TextureDescriptor,
+)
+from moka.commands.draws import INSTANCE
+from moka.commands.handles import Handle, ResourceKind
+from moka.core.errors import DeviceError
+
+__all__ = ["ModernGLBackend"]
+
+
+class ModernGLBackend:
+    """Implements :class:`moka.backend.protocol.Backend`.
+
+    ``explain`` turns a driver's shader log into one line that names file
+    and line; ``multi_draw`` can be turned off to run as on GL 3.3.
+    """
+
+    def __init__(
+        self,
+        context: GraphicsContext,
+        explain: Callable[[str, ShaderText], str],
+        *,
+        multi_draw: bool = True,
+    ) -> None:
+        self._context = context
+        self._ctx = context.gl
+        self._gl = Functions(context.function)
+        self._explain = explain
+        self.info = _read_info(context, multi_draw=multi_draw)
+        self._state = StateCache(self._gl)
+        self._samplers = SamplerCache(self._gl)
+        self._blocks = BlockRegistry()
+        # Resources by the slots of their handles.
+        self._resources: dict[tuple[ResourceKind, int], Any] = {}
+        self._meshes = MeshTable()
+        self._sources: list[VertexSource] = []
+        self._source_numbers: dict[VertexSource, int] = {}
+        self._bindings: dict[tuple[int, int], Bindings] = {}
+        self._arrays: dict[tuple[int, int], Any] = {}
+        self._instances = self._ctx.buffer(
+            reserve=INSTANCE.itemsize, dynamic=True
+        )
+        self._commands = self._ctx.buffer(
+            reserve=INDIRECT.itemsize, dynamic=True
+        )
+        self._target: GlFramebuffer | None = None
+        self._uploaded = 0
+        self._closed = False
+        self._initialise()
+
+    def create_buffer(
+        self, handle: Handle, descriptor: BufferDescriptor, data: Any
+    ) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        if data is None:
+            buffer = self._ctx.buffer(
+                reserve=descriptor.size, dynamic=descriptor.dynamic
+            )
+        else:
+            size = memoryview(data).nbytes
+            if size != descriptor.size:
+                raise DeviceError(
+                    f"buffer {descriptor.label}: {size} bytes given for "
+                    f"{descriptor.size}"
+                )
+            buffer = self._ctx.buffer(data, dynamic=descriptor.dynamic)
+            self._uploaded += size
+        self._put(handle, buffer)
+
+    def create_texture(
+        self,
+        handle: Handle,
+        descriptor: TextureDescriptor,
+        data: TextureData | None,
+    ) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        if max(descriptor.width, descriptor.height) > (
+            self.info.max_texture_size
+        ):
+            raise DeviceError(
+                f"texture {descriptor.label}: {descriptor.width}x"
+                f"{descriptor.height} is larger than this driver's "
+                f"{self.info.max_texture_size}"
+            )
+        self._put(handle, GlTexture(self._gl, descriptor, data))
+        self._uploaded += sum(level.nbytes for level in data or ())
+        self._check_errors(f"texture {descriptor.label}")
+
+    def create_program(
+        self, handle: Handle, descriptor: ProgramDescriptor
+    ) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        self._put(
+            handle,
+            GlProgram(self._ctx, descriptor, self._blocks, self._explain_log),
+        )
+        self._state.forget("program")
+
+    def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        source = VertexSource(
+            descriptor.topology,
+            descriptor.layout,
+            descriptor.vertex_buffer,
+            descriptor.index_buffer,
+            descriptor.index_type,
+        )
+        number = self._source_numbers.setdefault(source, len(self._sources))
+        if number == len(self._sources):
+            self._sources.append(source)
+        self._meshes.put(
+            handle.index,
+            count=descriptor.count,
+            first=descriptor.first,
+            base_vertex=descriptor.base_vertex,
+            source=number,
+            indexed=descriptor.index_buffer is not None,
+        )
+
+    def create_framebuffer(
+        self, handle: Handle, descriptor: FramebufferDescriptor
+    ) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        self._state.forget("framebuffer")
+        self._put(handle, GlFramebuffer(self._gl, descriptor, self._get))
+
+    def create_bind_group(
+        self, handle: Handle, descriptor: BindGroupDescriptor
+    ) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        self._put(handle, descriptor)
+
+    def destroy(self, handle: Handle) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        resource = self._resources.pop((handle.kind, handle.index), None)
+        if handle.kind is ResourceKind.PROGRAM:
+            self._drop(self._bindings, 0, handle.index)
+            self._drop(self._arrays, 0, handle.index)
+        elif handle.kind is ResourceKind.BIND_GROUP:
+            self._drop(self._bindings, 1, handle.index)
+        elif handle.kind is ResourceKind.BUFFER:
+            self._drop_sources(handle)
+        if resource is not None and hasattr(resource, "release"):
+            resource.release()
+        # GL names are reused: what the cache says is bound may be gone.
+        self._state.forget()
+
+    def execute(self, recording: Recording) -> FrameCounters:
+        """See :class:`moka.backend.protocol.Backend`."""
+        counters = FrameCounters(bytes_uploaded=self._uploaded)
+        self._uploaded = 0
+        self._state.counters = counters
+        counters.draw_packets = len(recording.draws)
+        batches = merge_draws(recording, self._meshes)
+        self._upload(recording.instances, self._instances)
+        if self.info.multi_draw_indirect:
+            self._upload(batches.commands, self._commands)
+            self._gl.BindBuffer(c.DRAW_INDIRECT_BUFFER, self._commands.glo)
+        for step in recording.steps:
+            if isinstance(step, DrawSpan):
+                for batch in batches.of_span[step.start]:
+                    self._draw(batches, batch, recording, counters)
+            else:
+                self._run(step)
+        counters.bytes_uploaded += self._uploaded
+        self._uploaded = 0
+        self._ctx.gc()
+        self._check_errors("frame")
+        return counters
+
+    def read_texture(
+        self, handle: Handle, level: int, face: int
+    ) -> NDArray[Any]:
+        """See :class:`moka.backend.protocol.Backend`."""
+        texels: NDArray[Any] = self._get(handle).read(level, face)
+        self._check_errors("read_texture")
+        return texels
+
+    def finish(self) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        self._gl.Finish()
+
+    def present(self) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        self._context.swap()
+
+    def close(self) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        if self._closed:
+            return
+        self._closed = True
+        with contextlib.suppress(Exception):
+            for resource in self._resources.values():
+                if hasattr(resource, "release"):
+                    resource.release()
+            self._samplers.release()
+            self._ctx.gc()
+        self._resources.clear()
+        self._arrays.clear()
+        self._context.close()
+
+    def _initialise(self) -> None:
+        gl = self._gl
+        gl.PixelStorei(c.UNPACK_ALIGNMENT, 1)
+        gl.PixelStorei(c.PACK_ALIGNMENT, 1)
+        gl.Enable(c.TEXTURE_CUBE_MAP_SEAMLESS)
+        gl.Enable(c.PROGRAM_POINT_SIZE)
+        gl.Disable(c.FRAMEBUFFER_SRGB)
+        if self.info.clip_control:
+            # Depth from 0 to 1, so that reversed depth keeps its precision.
+            gl.ClipControl(c.LOWER_LEFT, c.ZERO_TO_ONE)
+
+    def _put(self, handle: Handle, resource: Any) -> None:
+        self._resources[handle.kind, handle.index] = resource
+
+    def _get(self, handle: Handle) -> Any:
+        return self._resources[handle.kind, handle.index]
+
+    @staticmethod
+    def _drop(cache: dict[tuple[int, int], Any], part: int, slot: int) -> None:
+        for key in [key for key in cache if key[part] == slot]:
+            entry = cache.pop(key)
+            if hasattr(entry, "release"):
+                entry.release()
+
+    def _drop_sources(self, buffer: Handle) -> None:
+        for source in [
+            source
+            for source in self._source_numbers
+            if buffer in (source.vertex_buffer, source.index_buffer)
+        ]:
+            # Numbers are never given out again, so that a mesh that still
+            # names one cannot draw from another buffer.
+            self._drop(self._arrays, 1, self._source_numbers.pop(source))
+
+    def _upload(self, rows: NDArray[Any], buffer: Any) -> None:
+        if not len(rows):
+            return
+        # Orphaning lets the driver keep the last frame's copy while it is
+        # still being drawn from.
+        buffer.orphan(rows.nbytes)
+        buffer.write(np.ascontiguousarray(rows))
+        self._uploaded += rows.nbytes
+
+    def _draw(
+        self,
+        batches: Batches,
+        batch: int,
+        recording: Recording,
+        counters: FrameCounters,
+    ) -> None:
+        slot = batches.program[batch]
+        program: GlProgram = self._resources[ResourceKind.PROGRAM, slot]
+        number = batches.source[batch]
+        source = self._sources[number]
+        state = self._state
+        array = self._arrays.get((slot, number))
+        if array is None:
+            array = self._arrays[slot, number] = make_vertex_array(
+                self._ctx, program, source, self._get, self._instances
+            )
+            state.forget("vertex_array")
+        state.program(program.name)
+        state.vertex_array(array.glo)
+        state.raster(recording.states[batches.state[batch]])
+        self._bind(slot, program, batches.bind_group[batch])
+        first, last = batches.start[batch], batches.start[batch + 1]
+        if self.info.multi_draw_indirect:
+            self._multi_draw(source, first, last - first)
+            counters.gl_draws += 1
+            return
+        for command in batches.commands[first:last]:
+            self._single_draw(array, program, source, command)
+            counters.gl_draws += 1
+
+    def _bind(self, slot: int, program: GlProgram, group: int) -> None:
+        bindings = self._bindings.get((slot, group))
+        if bindings is None:
+            bindings = self._bindings[slot, group] = match_bindings(
+                program,
+                self._resources[ResourceKind.BIND_GROUP, group],
+                self._get,
+                self._get,
+                self._samplers,
+            )
+        for texture in bindings.textures:
+            self._state.texture(*texture)
+        for block in bindings.blocks:
+            self._state.uniform_block(*block)
+
+    def _multi_draw(self, source: VertexSource, first: int, count: int) -> None:
+        offset = first * INDIRECT.itemsize
+        mode = c.TOPOLOGY[source.topology]
+        if source.index_buffer is None:
+            self._gl.MultiDrawArraysIndirect(
+                mode, offset, count, INDIRECT.itemsize
+            )
+        else:
+            self._gl.MultiDrawElementsIndirect(
+                mode,
+                c.INDEX_TYPE[source.index_type],
+                offset,
+                count,
+                INDIRECT.itemsize,
+            )
+
+    def _single_draw(
+        self, array: Any, program: GlProgram, source: VertexSource, command: Any
+    ) -> None:
+        mode = c.TOPOLOGY[source.topology]
+        if source.index_buffer is None:
+            # Without indices the base instance is the fourth word.
+            first_instance = int(command["base_vertex"])
+        else:
+            first_instance = int(command["base_instance"])
+        bind_instances(array, program, self._instances, first_instance)
+        # Binding attributes binds the vertex array, as a side effect.
+        count, instances = int(command["count"]), command["instance_count"]
+        if source.index_buffer is None:
+            self._gl.DrawArraysInstanced(
+                mode, int(command["first"]), count, int(instances)
+            )
+        else:
+            width = np.dtype(source.index_type.value).itemsize
+            self._gl.DrawElementsInstancedBaseVertex(
+                mode,
+                count,
+                c.INDEX_TYPE[source.index_type],
+                int(command["first"]) * width,
+                int(instances),
+                int(command["base_vertex"]),
+            )
+
+    def _run(self, command: Command) -> None:
+        match command:
+            case BindFramebuffer(framebuffer):
+                self._bind_framebuffer(framebuffer)
+            case Clear(colour, depth):
+                self._clear(colour, depth)
+            case SetViewport(rectangle):
+                self._state.viewport(rectangle)
+            case SetScissor(rectangle):
+                self._state.scissor(rectangle)
+            case FillBuffer(buffer, data, offset):
+                self._get(buffer).write(data, offset)
+                self._uploaded += len(data)
+            case GenerateMipmaps(texture):
+                self._get(texture).generate_mipmaps()
+            case ResolveFramebuffer(source, target):
+                self._resolve(self._get(source), self._get(target))
+            case ReadPixels():
+                self._read_pixels(command)
+
+    def _bind_framebuffer(self, handle: Handle | None) -> None:
+        self._state.scissor(None)
+        if handle is None:
+            self._state.framebuffer(0)
+            self._target = None
+            self._state.viewport((0, 0, *self._context.framebuffer_size))
+            return
+        self._target = self._get(handle)
+        self._state.framebuffer(self._target.name)
+        self._state.viewport((0, 0, *self._target.size))
+
+    def _clear(
+        self, colour: tuple[float, ...] | None, depth: float | None
+    ) -> None:
+        self._state.write_masks(colour=True, depth=True)
+        if colour is not None:
+            values = (c_float * 4)(*colour)
+            count = self._target.colour_count if self._target else 1
+            for attachment in range(count):
+                self._gl.ClearBufferfv(c.COLOR, attachment, byref(values))
+        if depth is not None:
+            self._gl.ClearBufferfv(c.DEPTH, 0, byref(c_float(depth)))
+
+    def _resolve(self, source: GlFramebuffer, target: GlFramebuffer) -> None:
+        gl = self._gl
+        self._state.scissor(None)
+        gl.BindFramebuffer(c.READ_FRAMEBUFFER, source.name)
+        self._state.framebuffer(target.name)
+        self._target = target
+        rectangle = (0, 0, *source.size)
+        gl.BlitFramebuffer(
+            *rectangle, *rectangle, c.COLOR_BUFFER_BIT, c.NEAREST
+        )
+
+    def _read_pixels(self, command: ReadPixels) -> None:
+        gl = self._gl
+        handle = command.framebuffer
+        name = 0 if handle is None else self._get(handle).name
+        gl.BindFramebuffer(c.READ_FRAMEBUFFER, name)
+        if handle is not None:
+            gl.ReadBuffer(c.COLOR_ATTACHMENT0 + command.attachment)
+        _, _, width, height = command.rectangle
+        pixels = np.empty((height, width, command.channels), command.dtype)
+        layout, kind = c.readback_format(command.channels, command.dtype)
+        gl.ReadPixels(*command.rectangle, layout, kind, pixels.ctypes.data)
+        command.into.data = pixels
+
+    def _explain_log(self, log: str, descriptor: ProgramDescriptor) -> str:
+        in_fragment = "fragment_shader" in log and "vertex_shader" not in log
+        text = descriptor.fragment if in_fragment else descriptor.vertex
+        return self._explain(log, text)
+
+    def _check_errors(self, what: str) -> None:
+        errors = self._context.take_errors()
+        if errors:
+            raise DeviceError(f"{what}: OpenGL reports {errors[0]}")
+
+
+def _read_info(context: GraphicsContext, *, multi_draw: bool) -> BackendInfo:
+    ctx = context.gl
+    info = ctx.info
+    extensions = ctx.extensions
+    version = ctx.version_code
+    base_instance = version >= 420 or "GL_ARB_base_instance" in extensions
+    indirect = version >= 430 or "GL_ARB_multi_draw_indirect" in extensions
+    return BackendInfo(
+        kind=context.kind,
+        vendor=info["GL_VENDOR"],
+        renderer=info["GL_RENDERER"],
+        version=info["GL_VERSION"],
+        max_samples=info["GL_MAX_SAMPLES"],
+        max_texture_size=info["GL_MAX_TEXTURE_SIZE"],
+        max_uniform_block_size=info["GL_MAX_UNIFORM_BLOCK_SIZE"],
+        uniform_alignment=info["GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT"],
+        max_texture_units=info["GL_MAX_TEXTURE_IMAGE_UNITS"],
+        clip_control=version >= 450 or "GL_ARB_clip_control" in extensions,
+        multi_draw_indirect=multi_draw and base_instance and indirect,
+    )

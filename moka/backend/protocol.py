@@ -1,0 +1,113 @@
+"""What a backend does: make resources, execute recordings, read back.
+
+All methods are called on one thread, the render thread. Handles have been
+checked by the device; a backend trusts them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+from moka.commands.command_list import Recording
+from moka.commands.descriptors import (
+    BindGroupDescriptor,
+    BufferDescriptor,
+    FramebufferDescriptor,
+    MeshDescriptor,
+    ProgramDescriptor,
+    TextureDescriptor,
+)
+from moka.commands.handles import Handle
+
+__all__ = ["Backend", "BackendInfo", "FrameCounters", "TextureData"]
+
+# One array per mip level: (height, width, channels), top row first; for cube
+# maps (6, size, size, channels).
+TextureData = Sequence[NDArray[Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class BackendInfo:
+    """Facts about the driver that layers above may act on."""
+
+    kind: str
+    vendor: str = ""
+    renderer: str = ""
+    version: str = ""
+    max_samples: int = 1
+    max_texture_size: int = 2048
+    max_uniform_block_size: int = 16384
+    uniform_alignment: int = 256
+    max_texture_units: int = 16
+    clip_control: bool = False
+    multi_draw_indirect: bool = False
+
+
+@dataclass(slots=True)
+class FrameCounters:
+    """Work done and skipped while one recording was executed."""
+
+    draw_packets: int = 0
+    gl_draws: int = 0
+    state_changes: int = 0
+    state_changes_skipped: int = 0
+    bytes_uploaded: int = 0
+
+
+class Backend(Protocol):
+    """The implementation side of the bridge behind GraphicsDevice."""
+
+    info: BackendInfo
+
+    def create_buffer(
+        self, handle: Handle, descriptor: BufferDescriptor, data: Any
+    ) -> None:
+        """Make a buffer; ``data`` is bytes-like or None (undefined)."""
+
+    def create_texture(
+        self,
+        handle: Handle,
+        descriptor: TextureDescriptor,
+        data: TextureData | None,
+    ) -> None:
+        """Make a texture with the levels of ``data`` or undefined texels."""
+
+    def create_program(
+        self, handle: Handle, descriptor: ProgramDescriptor
+    ) -> None:
+        """Compile and link; raises ShaderError."""
+
+    def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
+        """Make a mesh."""
+
+    def create_framebuffer(
+        self, handle: Handle, descriptor: FramebufferDescriptor
+    ) -> None:
+        """Make a framebuffer; raises DeviceError if it is incomplete."""
+
+    def create_bind_group(
+        self, handle: Handle, descriptor: BindGroupDescriptor
+    ) -> None:
+        """Make a bind group."""
+
+    def destroy(self, handle: Handle) -> None:
+        """Free a resource that no later recording uses."""
+
+    def execute(self, recording: Recording) -> FrameCounters:
+        """Run a recording from first to last step."""
+
+    def read_texture(
+        self, handle: Handle, level: int, face: int
+    ) -> NDArray[Any]:
+        """The texels of one level as stored: (height, width, channels)."""
+
+    def finish(self) -> None:
+        """Return when the GPU has done all that was asked."""
+
+    def present(self) -> None:
+        """Show what was drawn into the window."""
+
+    def close(self) -> None:
+        """Free everything; may be called twice."""

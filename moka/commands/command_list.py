@@ -1,0 +1,455 @@
+"""Records a frame on any thread; sorts it; knows nothing of GL.
+
+Two kinds of entries share one order: command buffers (a key and a run of
+rare commands and hand-recorded draws that stay together) and bulk draws (a
+row each, every row with a key of its own). Every packet carries all that it
+needs, so nothing set for one draw reaches the next.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.commands import (
+    BindFramebuffer,
+    Clear,
+    Command,
+    FillBuffer,
+    GenerateMipmaps,
+    Readback,
+    ReadPixels,
+    ResolveFramebuffer,
+    SetScissor,
+    SetViewport,
+)
+from moka.commands.descriptors import RasterState
+from moka.commands.draws import (
+    DRAW,
+    INSTANCE,
+    Draws,
+    Instances,
+    identity_instance,
+)
+from moka.commands.handles import Handle, ResourceKind
+from moka.commands.sort_key import SortKey
+from moka.core.errors import CommandError
+
+__all__ = ["CommandBuffer", "CommandList", "DrawSpan", "Recording"]
+
+_MAXIMUM_KEY = (1 << 64) - 1
+
+
+@dataclass(frozen=True, slots=True)
+class DrawSpan:
+    """Rows ``start`` to ``stop`` of a recording's draws."""
+
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A finished command list, as a backend executes it.
+
+    ``steps`` is the frame in order: rare commands and spans of ``draws``.
+    The rows of ``instances`` stand in the order of the draws that use them,
+    so that the whole array reaches the GPU in one write and neighbours can
+    be merged. ``handles`` are sets of the resources that it uses.
+    """
+
+    steps: tuple[Command | DrawSpan, ...]
+    draws: Draws
+    instances: Instances
+    states: tuple[RasterState, ...]
+    handles: tuple[frozenset[Handle], ...]
+
+
+class CommandBuffer:
+    """Commands that stay together, in the order they are recorded."""
+
+    def __init__(self, owner: "CommandList") -> None:
+        self._owner = owner
+        self._entries: list[Command | DrawSpan] = []
+
+    def bind_framebuffer(self, framebuffer: Handle | None) -> None:
+        """Draw into ``framebuffer`` from here on; None is the window."""
+        self._use(framebuffer)
+        self._entries.append(BindFramebuffer(framebuffer))
+
+    def clear(
+        self,
+        colour: tuple[float, float, float, float] | None = None,
+        depth: float | None = None,
+    ) -> None:
+        """Clear to a linear RGBA colour, to a depth, or both."""
+        self._entries.append(Clear(colour, depth))
+
+    def viewport(self, x: int, y: int, width: int, height: int) -> None:
+        """Map clip space to this rectangle, from the lower left."""
+        self._entries.append(SetViewport((x, y, width, height)))
+
+    def scissor(
+        self, rectangle: tuple[int, int, int, int] | None = None
+    ) -> None:
+        """Draw and clear only inside ``rectangle``; None is everywhere."""
+        self._entries.append(SetScissor(rectangle))
+
+    def fill_buffer(
+        self, buffer: Handle, data: bytes | NDArray[Any], offset: int = 0
+    ) -> None:
+        """Write ``data``, copied now, into ``buffer`` at byte ``offset``."""
+        self._use(buffer, ResourceKind.BUFFER)
+        content = data.tobytes() if isinstance(data, np.ndarray) else data
+        self._entries.append(FillBuffer(buffer, bytes(content), offset))
+
+    def generate_mipmaps(self, texture: Handle) -> None:
+        """Make the lower mip levels of ``texture`` from level 0."""
+        self._use(texture, ResourceKind.TEXTURE)
+        self._entries.append(GenerateMipmaps(texture))
+
+    def resolve(self, source: Handle, target: Handle) -> None:
+        """Average the samples of framebuffer ``source`` into ``target``."""
+        self._use(source, ResourceKind.FRAMEBUFFER)
+        self._use(target, ResourceKind.FRAMEBUFFER)
+        self._entries.append(ResolveFramebuffer(source, target))
+
+    def read_pixels(
+        self,
+        framebuffer: Handle | None,
+        rectangle: tuple[int, int, int, int],
+        *,
+        attachment: int = 0,
+        channels: int = 4,
+        dtype: str = "f4",
+    ) -> Readback:
+        """Read a colour attachment; see :class:`ReadPixels`."""
+        self._use(framebuffer)
+        readback = Readback()
+        self._entries.append(
+            ReadPixels(
+                framebuffer, rectangle, readback, attachment, channels, dtype
+            )
+        )
+        return readback
+
+    def draw(
+        self,
+        program: Handle,
+        mesh: Handle,
+        bind_group: Handle,
+        state: RasterState | None = None,
+        instances: Instances | None = None,
+    ) -> None:
+        """Draw one mesh, once per row of ``instances`` (default: once)."""
+        owner = self._owner
+        if instances is None:
+            instances = identity_instance()
+        row = np.zeros(1, DRAW)
+        row["program"] = self._use(program, ResourceKind.PROGRAM)
+        row["mesh"] = self._use(mesh, ResourceKind.MESH)
+        row["bind_group"] = self._use(bind_group, ResourceKind.BIND_GROUP)
+        row["state"] = owner.state_index(state or RasterState())
+        row["instance_count"] = len(instances)
+        row["first_instance"] = owner._add_instances(instances)
+        self._entries.append(owner._add_draws(row))
+
+    def _use(
+        self, handle: Handle | None, kind: ResourceKind | None = None
+    ) -> int:
+        if handle is None:
+            return 0
+        if kind is not None and handle.kind is not kind:
+            raise CommandError(
+                f"{handle}: expected a {kind.name.lower()} handle"
+            )
+        self._owner._handles.add(handle)
+        return handle.index
+
+
+class CommandList:
+    """The commands of one frame.
+
+    Single commands can be recorded directly, each a buffer of its own:
+    ``commands.clear(...)``, ``commands.draw(..., key=...)``. Without a key
+    an entry takes the key of the entry before it, and since the sort is
+    stable it stays right behind its predecessor's place in the recording.
+    """
+
+    def __init__(self) -> None:
+        self._buffers: list[tuple[int, CommandBuffer]] = []
+        self._buffer_order: list[int] = []
+        self._bulk: list[tuple[int, int, int]] = []
+        self._draws: list[Draws] = []
+        self._draw_count = 0
+        self._instances: list[Instances] = []
+        self._instance_count = 0
+        self._states: dict[RasterState, int] = {}
+        self._handles: set[Handle] = set()
+        self._handle_sets: list[frozenset[Handle]] = []
+        self._sequence = 0
+        self._last_key = 0
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing has been recorded."""
+        return not self._buffers and not self._draw_count
+
+    @property
+    def draw_count(self) -> int:
+        """How many draws are recorded."""
+        return self._draw_count
+
+    def command_buffer(self, key: SortKey | int | None = None) -> CommandBuffer:
+        """A buffer whose commands run together at ``key``'s place."""
+        value = self._last_key if key is None else int(key)
+        if not 0 <= value <= _MAXIMUM_KEY:
+            raise CommandError(f"sort key: {value} does not fit into 64 bits")
+        self._last_key = value
+        buffer = CommandBuffer(self)
+        self._buffers.append((value, buffer))
+        self._buffer_order.append(self._sequence)
+        self._sequence += 1
+        return buffer
+
+    def state_index(self, state: RasterState) -> int:
+        """The number that stands for ``state`` in rows of draws."""
+        return self._states.setdefault(state, len(self._states))
+
+    def use(self, handles: frozenset[Handle]) -> None:
+        """Tell that rows of :meth:`draws` name these resources.
+
+        Pass the same set again while it is unchanged: a device that has
+        checked it once does not look at its members again.
+        """
+        self._handle_sets.append(handles)
+
+    def draws(self, rows: Draws, instances: Instances) -> None:
+        """Record many draws at once, each at the place its key tells.
+
+        ``rows`` is an array of :data:`moka.commands.draws.DRAW` whose
+        ``first_instance`` counts rows of ``instances``; it is not copied,
+        so leave it alone until the frame is submitted. The resources that
+        it names are told with :meth:`use`.
+        """
+        if rows.dtype != DRAW or instances.dtype != INSTANCE:
+            raise CommandError("draws: rows need the dtypes DRAW and INSTANCE")
+        if not len(rows):
+            return
+        ends = rows["first_instance"] + rows["instance_count"]
+        if int(ends.max()) > len(instances):
+            raise CommandError(
+                "draws: a row names instances that are not there"
+            )
+        if self._instance_count:
+            rows = rows.copy()
+            rows["first_instance"] += np.uint32(self._instance_count)
+        self._add_instances(instances)
+        span = self._add_draws(rows)
+        self._bulk.append((self._sequence, span.start, span.stop))
+        self._sequence += len(rows)
+
+    def bind_framebuffer(
+        self, framebuffer: Handle | None, *, key: SortKey | int | None = None
+    ) -> None:
+        """:meth:`CommandBuffer.bind_framebuffer` in a buffer of its own."""
+        self.command_buffer(key).bind_framebuffer(framebuffer)
+
+    def clear(
+        self,
+        colour: tuple[float, float, float, float] | None = None,
+        depth: float | None = None,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.clear` in a buffer of its own."""
+        self.command_buffer(key).clear(colour, depth)
+
+    def viewport(
+        self,
+        x: int,
+        y: int,
+        width: int,
+        height: int,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.viewport` in a buffer of its own."""
+        self.command_buffer(key).viewport(x, y, width, height)
+
+    def scissor(
+        self,
+        rectangle: tuple[int, int, int, int] | None = None,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.scissor` in a buffer of its own."""
+        self.command_buffer(key).scissor(rectangle)
+
+    def fill_buffer(
+        self,
+        buffer: Handle,
+        data: bytes | NDArray[Any],
+        offset: int = 0,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.fill_buffer` in a buffer of its own."""
+        self.command_buffer(key).fill_buffer(buffer, data, offset)
+
+    def generate_mipmaps(
+        self, texture: Handle, *, key: SortKey | int | None = None
+    ) -> None:
+        """:meth:`CommandBuffer.generate_mipmaps` in its own buffer."""
+        self.command_buffer(key).generate_mipmaps(texture)
+
+    def resolve(
+        self,
+        source: Handle,
+        target: Handle,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.resolve` in a buffer of its own."""
+        self.command_buffer(key).resolve(source, target)
+
+    def read_pixels(
+        self,
+        framebuffer: Handle | None,
+        rectangle: tuple[int, int, int, int],
+        *,
+        attachment: int = 0,
+        channels: int = 4,
+        dtype: str = "f4",
+        key: SortKey | int | None = None,
+    ) -> Readback:
+        """:meth:`CommandBuffer.read_pixels` in a buffer of its own."""
+        return self.command_buffer(key).read_pixels(
+            framebuffer,
+            rectangle,
+            attachment=attachment,
+            channels=channels,
+            dtype=dtype,
+        )
+
+    def draw(
+        self,
+        program: Handle,
+        mesh: Handle,
+        bind_group: Handle,
+        state: RasterState | None = None,
+        instances: Instances | None = None,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.draw` in a buffer of its own."""
+        self.command_buffer(key).draw(
+            program, mesh, bind_group, state, instances
+        )
+
+    def finish(self, *, sort: bool = True) -> Recording:
+        """What a backend executes, in key order or as recorded."""
+        draws = _concatenate(self._draws, DRAW)
+        order = self._order(draws["key"], sort)
+        steps, rows = self._steps(order)
+        draws = draws[rows]
+        instances = _gather_instances(
+            draws, _concatenate(self._instances, INSTANCE)
+        )
+        return Recording(
+            tuple(steps),
+            draws,
+            instances,
+            tuple(self._states),
+            (frozenset(self._handles), *self._handle_sets),
+        )
+
+    def _add_draws(self, rows: Draws) -> DrawSpan:
+        span = DrawSpan(self._draw_count, self._draw_count + len(rows))
+        self._draws.append(rows)
+        self._draw_count = span.stop
+        return span
+
+    def _add_instances(self, instances: Instances) -> int:
+        first = self._instance_count
+        self._instances.append(instances)
+        self._instance_count += len(instances)
+        return first
+
+    def _order(
+        self, draw_keys: NDArray[np.uint64], sort: bool
+    ) -> NDArray[np.int64]:
+        """Entries in order: draw rows as they are, buffer i as -1 - i."""
+        buffer_keys = np.array([key for key, _ in self._buffers], np.uint64)
+        spans = [np.arange(start, stop) for _, start, stop in self._bulk]
+        rows = np.concatenate(spans) if spans else np.zeros(0, np.int64)
+        entries = np.concatenate([-1 - np.arange(len(buffer_keys)), rows])
+        sequence = np.concatenate(
+            [
+                np.array(self._buffer_order, np.int64),
+                *(
+                    np.arange(first, first + stop - start)
+                    for first, start, stop in self._bulk
+                ),
+            ]
+        )
+        if len(spans) + bool(len(buffer_keys)) > 1:
+            recorded = np.argsort(sequence, kind="stable")
+            entries = entries[recorded]
+        else:
+            recorded = np.arange(len(entries))
+        if not sort:
+            return entries
+        keys = np.concatenate([buffer_keys, draw_keys[rows]])[recorded]
+        return entries[np.argsort(keys, kind="stable")]
+
+    def _steps(
+        self, order: NDArray[np.int64]
+    ) -> tuple[list[Command | DrawSpan], NDArray[np.int64]]:
+        """The order cut at command buffers; the draw rows in that order."""
+        steps: list[Command | DrawSpan] = []
+        rows: list[NDArray[np.int64]] = []
+        placed = 0
+
+        def place(span: NDArray[np.int64]) -> None:
+            nonlocal placed
+            if len(span):
+                rows.append(span)
+                steps.append(DrawSpan(placed, placed + len(span)))
+                placed += len(span)
+
+        start = 0
+        for position in np.flatnonzero(order < 0).tolist():
+            place(order[start:position])
+            _, buffer = self._buffers[-1 - int(order[position])]
+            for entry in buffer._entries:
+                if isinstance(entry, DrawSpan):
+                    place(np.arange(entry.start, entry.stop))
+                else:
+                    steps.append(entry)
+            start = position + 1
+        place(order[start:])
+        return steps, (np.concatenate(rows) if rows else np.zeros(0, np.int64))
+
+
+def _concatenate(
+    arrays: list[NDArray[np.void]], dtype: np.dtype[np.void]
+) -> NDArray[np.void]:
+    if len(arrays) == 1:
+        return arrays[0]
+    return np.concatenate(arrays) if arrays else np.zeros(0, dtype)
+
+
+def _gather_instances(draws: Draws, instances: Instances) -> Instances:
+    """Instances in draw order; rewrites ``first_instance`` of ``draws``."""
+    counts = draws["instance_count"].astype(np.int64)
+    total = int(counts.sum())
+    starts = np.cumsum(counts) - counts
+    if total == len(draws):
+        rows = draws["first_instance"]
+    else:
+        shift = draws["first_instance"].astype(np.int64) - starts
+        rows = np.arange(total) + np.repeat(shift, counts)
+    draws["first_instance"] = starts
+    return instances.take(rows)

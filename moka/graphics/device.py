@@ -1,0 +1,283 @@
+"""GraphicsDevice: the application's side of the bridge to a backend.
+
+Resources are made and lists are submitted on any thread; everything is
+executed on the render thread in the order of the calls. The two sides meet
+at the start of a frame: a submit waits for the frame before the last, so
+that one frame at most is in flight while the next is recorded.
+"""
+
+import itertools
+import weakref
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from numpy.typing import NDArray
+
+from moka.backend.protocol import (
+    Backend,
+    BackendInfo,
+    FrameCounters,
+    TextureData,
+)
+from moka.commands.command_list import CommandList
+from moka.commands.descriptors import (
+    BindGroupDescriptor,
+    BufferDescriptor,
+    FramebufferDescriptor,
+    MeshDescriptor,
+    ProgramDescriptor,
+    TextureDescriptor,
+)
+from moka.commands.handles import Handle, HandleAllocator, ResourceKind
+from moka.core.errors import DeviceError
+from moka.graphics.render_thread import RenderThread
+from moka.graphics.shader_source import explain_log
+
+__all__ = ["Frame", "GraphicsDevice"]
+
+_device_numbers = itertools.count()
+
+
+class Frame:
+    """A submitted command list: wait for it, then read its counters."""
+
+    def __init__(
+        self, thread: RenderThread, future: "Future[FrameCounters]"
+    ) -> None:
+        self._thread = thread
+        self._future = future
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the render thread has executed it."""
+        return self._future.done()
+
+    def wait(self) -> FrameCounters:
+        """Return when it has been executed; raise what it raised."""
+        return self._thread.wait(self._future)
+
+
+class GraphicsDevice:
+    """Owns a backend on its render thread and the handles of its resources.
+
+    ``open_backend`` is called on the render thread and makes the context
+    there. Use :meth:`open` for a headless one. A device is closed by
+    :meth:`close`, by leaving its ``with`` block, when it is collected and
+    when the interpreter exits.
+    """
+
+    def __init__(self, open_backend: Callable[[], Backend]) -> None:
+        number = next(_device_numbers)
+        self._handles = HandleAllocator(number)
+        self._thread = RenderThread(open_backend)
+        self._info: BackendInfo | None = None
+        self._in_flight: Frame | None = None
+        self._checked: dict[frozenset[Handle], int] = {}
+        self._releases = 0
+        self._finalizer = weakref.finalize(self, self._thread.close)
+
+    @classmethod
+    def open(
+        cls,
+        backend: str = "auto",
+        *,
+        device: int | None = None,
+        debug: bool = False,
+    ) -> "GraphicsDevice":
+        """A headless device.
+
+        ``backend`` is ``auto``, ``egl``, ``osmesa`` or ``window`` (hidden),
+        ``device`` the number of an EGL device, ``debug`` turns GL debug
+        output on and its errors into DeviceError. Returns at once; the
+        first call that needs the context raises ContextError if none can be
+        made.
+        """
+
+        def open_backend() -> Backend:
+            from moka.backend.contexts import open_context
+            from moka.backend.moderngl_backend import ModernGLBackend
+
+            context = open_context(backend, device=device, debug=debug)
+            return ModernGLBackend(context, explain_log)
+
+        return cls(open_backend)
+
+    def __enter__(self) -> "GraphicsDevice":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def info(self) -> BackendInfo:
+        """Facts about the driver; waits until the context is made."""
+        if self._info is None:
+            self._thread.wait_until_open()
+            self._info = self._thread.call(lambda backend: backend.info)
+        return self._info
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the device has been closed."""
+        return not self._finalizer.alive
+
+    def create_buffer(
+        self, descriptor: BufferDescriptor, data: Any = None
+    ) -> Handle:
+        """A buffer with ``data`` (bytes-like, or an array) or undefined."""
+        handle = self._handles.allocate(ResourceKind.BUFFER)
+        self._thread.post(
+            lambda backend: backend.create_buffer(handle, descriptor, data)
+        )
+        return handle
+
+    def create_texture(
+        self, descriptor: TextureDescriptor, data: TextureData | None = None
+    ) -> Handle:
+        """A texture; ``data`` holds one array per mip level, top row first.
+
+        Arrays are (height, width, channels), for cube maps (6, size, size,
+        channels), and must not change until they have been uploaded.
+        """
+        handle = self._handles.allocate(ResourceKind.TEXTURE)
+        self._thread.post(
+            lambda backend: backend.create_texture(handle, descriptor, data)
+        )
+        return handle
+
+    def create_program(
+        self, descriptor: ProgramDescriptor, *, wait: bool = False
+    ) -> Handle:
+        """A program from preprocessed shaders.
+
+        With ``wait`` a shader that does not compile raises ShaderError here
+        and the device stays usable; without, the next call raises it and
+        the device is closed for work.
+        """
+        handle = self._handles.allocate(ResourceKind.PROGRAM)
+
+        def create(backend: Backend) -> None:
+            backend.create_program(handle, descriptor)
+
+        if not wait:
+            self._thread.post(create)
+            return handle
+        try:
+            self._thread.call(create)
+        except BaseException:
+            self._handles.release(handle)
+            raise
+        return handle
+
+    def create_mesh(self, descriptor: MeshDescriptor) -> Handle:
+        """A mesh over existing buffers."""
+        for buffer in (descriptor.vertex_buffer, descriptor.index_buffer):
+            if buffer is not None:
+                self._handles.check(buffer, ResourceKind.BUFFER)
+        handle = self._handles.allocate(ResourceKind.MESH)
+        self._thread.post(
+            lambda backend: backend.create_mesh(handle, descriptor)
+        )
+        return handle
+
+    def create_framebuffer(self, descriptor: FramebufferDescriptor) -> Handle:
+        """A framebuffer over existing textures."""
+        for attachment in (*descriptor.colour, descriptor.depth):
+            if attachment is not None:
+                self._handles.check(attachment.texture, ResourceKind.TEXTURE)
+        handle = self._handles.allocate(ResourceKind.FRAMEBUFFER)
+        self._thread.post(
+            lambda backend: backend.create_framebuffer(handle, descriptor)
+        )
+        return handle
+
+    def create_bind_group(self, descriptor: BindGroupDescriptor) -> Handle:
+        """Textures and uniform blocks that draws bind together."""
+        for binding in descriptor.textures:
+            self._handles.check(binding.texture, ResourceKind.TEXTURE)
+        for block in descriptor.uniforms:
+            self._handles.check(block.buffer, ResourceKind.BUFFER)
+        handle = self._handles.allocate(ResourceKind.BIND_GROUP)
+        self._thread.post(
+            lambda backend: backend.create_bind_group(handle, descriptor)
+        )
+        return handle
+
+    def destroy(self, *handles: Handle) -> None:
+        """Destroy resources once the frames that use them have run.
+
+        Raises CommandError for a handle that is not alive or not ours.
+        """
+        for handle in handles:
+            self._handles.release(handle)
+            self._releases += 1
+            self._thread.post(
+                lambda backend, handle=handle: backend.destroy(handle)
+            )
+
+    def count(self, kind: ResourceKind) -> int:
+        """How many resources of ``kind`` are alive."""
+        return self._handles.count(kind)
+
+    def submit(self, commands: CommandList, *, sort: bool = True) -> Frame:
+        """Hand a frame over, in key order or as recorded.
+
+        Waits until at most one other frame is in flight. Raises
+        CommandError for handles that are destroyed or another device's.
+        """
+        recording = commands.finish(sort=sort)
+        for handles in recording.handles:
+            if self._checked.get(handles) != self._releases:
+                self._check(handles)
+        if self._in_flight is not None:
+            self._in_flight.wait()
+        frame = Frame(
+            self._thread,
+            self._thread.post(lambda backend: backend.execute(recording)),
+        )
+        self._in_flight = frame
+        return frame
+
+    def submit_and_present(
+        self, commands: CommandList, *, sort: bool = True
+    ) -> Frame:
+        """:meth:`submit`, then show the result in the window."""
+        frame = self.submit(commands, sort=sort)
+        self._thread.post(lambda backend: backend.present())
+        return frame
+
+    def read_texture(
+        self, texture: Handle, *, level: int = 0, face: int = 0
+    ) -> NDArray[Any]:
+        """The texels of one mip level, (height, width, channels).
+
+        Row 0 is the row at t = 0: the top row of an uploaded image, the
+        bottom row of a rendered one.
+        """
+        self._handles.check(texture, ResourceKind.TEXTURE)
+        return self._thread.call(
+            lambda backend: backend.read_texture(texture, level, face)
+        )
+
+    def finish(self) -> None:
+        """Return when the GPU has done everything submitted so far."""
+        self._thread.call(lambda backend: backend.finish())
+
+    def close(self) -> None:
+        """Free everything and end the render thread; may be called twice.
+
+        Raises DeviceError if the thread does not end, and the error of a
+        frame that failed unnoticed.
+        """
+        if self._finalizer.detach() is None:
+            return
+        if not self._thread.close():
+            raise DeviceError("the render thread does not end")
+
+    def _check(self, handles: frozenset[Handle]) -> None:
+        for handle in handles:
+            self._handles.check(handle)
+        if len(self._checked) > 256:
+            self._checked.clear()
+        self._checked[handles] = self._releases
