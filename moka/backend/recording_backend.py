@@ -39,6 +39,7 @@ class RecordingBackend:
         self.info = info or BackendInfo(kind="recording")
         self.resources: dict[Handle, Any] = {}
         self.contents: dict[Handle, bytes] = {}
+        self.given_levels: dict[Handle, int] = {}
         self.frames: list[Recording] = []
         self.batches: list[Batches] = []
         self.presented = 0
@@ -61,8 +62,9 @@ class RecordingBackend:
         descriptor: TextureDescriptor,
         data: TextureData | None,
     ) -> None:
-        """Keep the descriptor."""
+        """Keep the descriptor and how many levels came with it."""
         self.resources[handle] = descriptor
+        self.given_levels[handle] = len(data or ())
 
     def create_program(
         self, handle: Handle, descriptor: ProgramDescriptor
@@ -105,6 +107,7 @@ class RecordingBackend:
         """Forget the resource."""
         del self.resources[handle]
         self.contents.pop(handle, None)
+        self.given_levels.pop(handle, None)
 
     def execute(self, recording: Recording) -> FrameCounters:
         """Keep the recording; fill buffers; answer read-backs with zeros."""

@@ -128,13 +128,14 @@ def pack_opaque_keys(
 
     Raises CommandError naming the field that is out of its range.
     """
-    return (
+    keys: NDArray[np.uint64] = (
         _head(pass_, layer, stage)
         | (_field("program", program, PROGRAM_BITS) << np.uint64(42))
         | (_field("material", material, MATERIAL_BITS) << np.uint64(28))
         | (_field("mesh", mesh, MESH_BITS) << np.uint64(16))
         | _depth(depth, DEPTH_BITS)
     )
+    return keys
 
 
 def pack_blended_keys(
@@ -152,12 +153,13 @@ def pack_blended_keys(
     """
     farthest = np.uint64((1 << BLENDED_DEPTH_BITS) - 1)
     inverted = farthest - _depth(depth, BLENDED_DEPTH_BITS)
-    return (
+    keys: NDArray[np.uint64] = (
         _head(pass_, layer, Stage.BLENDED)
         | (inverted << np.uint64(26))
         | (_field("program", program, PROGRAM_BITS) << np.uint64(14))
         | _field("material", material, MATERIAL_BITS)
     )
+    return keys
 
 
 def unpack_key(key: int) -> SortKey:
@@ -191,11 +193,12 @@ def unpack_key(key: int) -> SortKey:
 def _head(
     pass_: ArrayLike, layer: ArrayLike, stage: ArrayLike
 ) -> NDArray[np.uint64]:
-    return (
+    head: NDArray[np.uint64] = (
         (_field("pass", pass_, PASS_BITS) << np.uint64(60))
         | (_field("layer", layer, LAYER_BITS) << np.uint64(56))
         | (_field("stage", stage, STAGE_BITS) << np.uint64(54))
     )
+    return head
 
 
 def _field(name: str, values: ArrayLike, bits: int) -> NDArray[np.uint64]:

@@ -10,6 +10,7 @@ import itertools
 import weakref
 from collections.abc import Callable
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 from numpy.typing import NDArray
@@ -212,9 +213,7 @@ class GraphicsDevice:
         for handle in handles:
             self._handles.release(handle)
             self._releases += 1
-            self._thread.post(
-                lambda backend, handle=handle: backend.destroy(handle)
-            )
+            self._thread.post(partial(_destroy, handle))
 
     def count(self, kind: ResourceKind) -> int:
         """How many resources of ``kind`` are alive."""
@@ -281,3 +280,7 @@ class GraphicsDevice:
         if len(self._checked) > 256:
             self._checked.clear()
         self._checked[handles] = self._releases
+
+
+def _destroy(handle: Handle, backend: Backend) -> None:
+    backend.destroy(handle)

@@ -1,0 +1,187 @@
+"""Effect parameters: typed values, laid out once as GLSL's std140 asks.
+
+The report's effect parameter is a discriminated union that is looked up by
+name at every draw. Here the types of a block are declared once; from them
+come the NumPy dtype of its bytes and the GLSL that reads them, so that the
+two cannot disagree (OpenGL 3.3 specification, 2.11.4, "Standard Uniform
+Block Layout").
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.errors import CommandError
+
+__all__ = ["Parameter", "ParameterType", "UniformLayout"]
+
+
+class ParameterType(Enum):
+    """A GLSL type: its name, NumPy scalar, shape as given, alignment.
+
+    Matrices are given as NumPy has them, [row, column]; std140 stores
+    columns, each padded to four components.
+    """
+
+    FLOAT = ("float", "f4", (), 4)
+    VEC2 = ("vec2", "f4", (2,), 8)
+    VEC3 = ("vec3", "f4", (3,), 16)
+    VEC4 = ("vec4", "f4", (4,), 16)
+    INT = ("int", "i4", (), 4)
+    UINT = ("uint", "u4", (), 4)
+    IVEC4 = ("ivec4", "i4", (4,), 16)
+    BOOL = ("bool", "u4", (), 4)
+    MAT3 = ("mat3", "f4", (3, 3), 16)
+    MAT4 = ("mat4", "f4", (4, 4), 16)
+
+    @property
+    def glsl(self) -> str:
+        """The type's name in GLSL."""
+        return self.value[0]
+
+    @property
+    def is_matrix(self) -> bool:
+        """Whether values are transposed and padded when stored."""
+        return len(self.value[2]) == 2
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One named value of a block; ``count`` > 0 makes it an array."""
+
+    name: str
+    type: ParameterType
+    count: int = 0
+
+
+@dataclass(frozen=True)
+class UniformLayout:
+    """The parameters of a uniform block, or of one row of an array of them.
+
+    As an array (``rows`` > 0) the block is ``Name { NameRow rows[N]; }``.
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    rows: int = 0
+
+    @cached_property
+    def dtype(self) -> "np.dtype[np.void]":
+        """The NumPy type of one row, padding included."""
+        offset = 0
+        names, formats, offsets = [], [], []
+        for parameter in self.parameters:
+            scalar, shape, size, alignment = _storage(parameter)
+            offset = _align(offset, alignment)
+            names.append(parameter.name)
+            formats.append((scalar, shape))
+            offsets.append(offset)
+            offset += size
+        return np.dtype(
+            {
+                "names": names,
+                "formats": formats,
+                "offsets": offsets,
+                "itemsize": _align(offset, 16),
+            }
+        )
+
+    @property
+    def size(self) -> int:
+        """Bytes of the whole block."""
+        return self.dtype.itemsize * max(1, self.rows)
+
+    @cached_property
+    def glsl(self) -> str:
+        """The declaration of the block, to be injected into a shader."""
+        members = "\n".join(
+            f"    {parameter.type.glsl} {parameter.name}"
+            f"{f'[{parameter.count}]' if parameter.count else ''};"
+            for parameter in self.parameters
+        )
+        if not self.rows:
+            return f"layout(std140) uniform {self.name} {{\n{members}\n}};\n"
+        variable = self.name.lower()
+        return (
+            f"struct {self.name}Row {{\n{members}\n}};\n"
+            f"layout(std140) uniform {self.name} {{\n"
+            f"    {self.name}Row {variable}[{self.rows}];\n}};\n"
+        )
+
+    def pack(self, values: Mapping[str, Any]) -> NDArray[np.void]:
+        """One row as an array of length 1; absent parameters are zero.
+
+        Raises CommandError for a name the block does not have, or a value
+        of the wrong shape.
+        """
+        row = np.zeros(1, self.dtype)
+        self.fill(row, values)
+        return row
+
+    def fill(self, row: NDArray[np.void], values: Mapping[str, Any]) -> None:
+        """Write ``values`` into the first element of ``row``."""
+        types = {parameter.name: parameter for parameter in self.parameters}
+        for name, value in values.items():
+            if name not in types:
+                raise CommandError(
+                    f"block {self.name}: has no parameter {name!r}; it has "
+                    f"{', '.join(types)}"
+                )
+            row[name][0] = self._convert(types[name], value)
+
+    def _convert(self, parameter: Parameter, value: Any) -> NDArray[Any]:
+        _, scalar, shape, _ = parameter.type.value
+        expected = ((parameter.count,) if parameter.count else ()) + shape
+        try:
+            array = np.asarray(value, scalar)
+        except (TypeError, ValueError):
+            array = np.empty((0, 0, 0, 0))
+        if array.shape != expected:
+            raise CommandError(
+                f"block {self.name}: parameter {parameter.name!r} is a "
+                f"{parameter.type.glsl} of shape {expected}, got {value!r}"
+            )
+        if not parameter.type.is_matrix:
+            if parameter.count and len(shape) < 2:
+                return _pad_last(array, shape, scalar)
+            return array
+        return _pad_last(np.swapaxes(array, -1, -2), shape, scalar)
+
+
+def _storage(
+    parameter: Parameter,
+) -> tuple[str, tuple[int, ...], int, int]:
+    """NumPy scalar, stored shape, bytes and alignment of a member."""
+    _, scalar, shape, alignment = parameter.type.value
+    if parameter.type.is_matrix:
+        # Columns are padded to vec4: mat3 is three of them.
+        stored: tuple[int, ...] = (shape[1], 4)
+    elif parameter.count:
+        # Array elements are padded to 16 bytes.
+        stored = (4,)
+    else:
+        stored = shape
+    if parameter.count:
+        stored = (parameter.count, *stored)
+        alignment = 16
+    return scalar, stored, 4 * int(np.prod(stored)), alignment
+
+
+def _pad_last(
+    array: NDArray[Any], shape: Sequence[int], scalar: str
+) -> NDArray[Any]:
+    """Pad the innermost axis (a column, or an array's element) to 4."""
+    if not shape:
+        array = array[..., np.newaxis]
+    padded = np.zeros((*array.shape[:-1], 4), scalar)
+    padded[..., : array.shape[-1]] = array
+    return padded
+
+
+def _align(offset: int, alignment: int) -> int:
+    return -(-offset // alignment) * alignment
