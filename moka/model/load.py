@@ -1,0 +1,83 @@
+"""Loading a glTF model: the parts are read by the modules next to this."""
+
+from moka.model.cameras import read_cameras
+from moka.model.extensions import check_required, unsupported_extensions
+from moka.model.lights import read_lights
+from moka.model.model import Model
+from moka.model.nodes import NodeTree, read_nodes
+from moka.model.read_materials import read_materials
+from moka.model.read_meshes import read_meshes
+from moka.model.source import GltfSource, ModelSource, open_source
+
+__all__ = ["load_model"]
+
+
+def load_model(source: ModelSource) -> Model:
+    """Read a glTF 2.0 model: .gltf, .glb, their bytes or a pygltflib.GLTF2.
+
+    Vertex data is not copied where the file has it as floats, images are
+    neither decoded nor, if they are files, opened. Raises ModelError, naming
+    the file and the JSON path, for a file that is missing, broken or needs
+    an extension that moka does not support.
+    """
+    opened = open_source(source)
+    check_required(opened)
+    document = opened.document
+    materials = read_materials(opened)
+    lights = read_lights(opened)
+    nodes = read_nodes(opened, len(lights))
+    path = opened.path
+    model = Model(
+        name=path.stem if path else "",
+        path=path,
+        nodes=nodes,
+        meshes=read_meshes(opened, materials),
+        materials=materials,
+        cameras=read_cameras(opened),
+        lights=lights,
+        scenes=_read_scenes(opened, nodes),
+        scene_names=[scene.name for scene in document.scenes] or [""],
+        extensions=tuple(sorted(set(document.extensions_used))),
+        unsupported_extensions=unsupported_extensions(opened),
+        omitted=_omitted(opened),
+    )
+    if document.scene is not None:
+        opened.check_index(
+            "scene", document.scene, "scenes", len(document.scenes)
+        )
+        model.default_scene = document.scene
+    return model
+
+
+def _read_scenes(source: GltfSource, nodes: NodeTree) -> list[list[int]]:
+    """The rows of each scene's roots; all roots if there are no scenes."""
+    rows = {index: row for row, index in enumerate(nodes.source.tolist())}
+    is_root = nodes.parents < 0
+    if not source.document.scenes:
+        return [[row for row in rows.values() if is_root[row]]]
+    scenes = []
+    for index, scene in enumerate(source.document.scenes):
+        for number, node in enumerate(scene.nodes):
+            path = f"scenes[{index}].nodes[{number}]"
+            source.check_index(path, node, "nodes", len(nodes))
+            if not is_root[rows[node]]:
+                raise source.error(path, f"nodes[{node}] has a parent")
+        scenes.append([rows[node] for node in scene.nodes])
+    return scenes
+
+
+def _omitted(source: GltfSource) -> dict[str, int]:
+    """What the document holds and moka does not draw, with its number."""
+    document = source.document
+    primitives = [
+        primitive for mesh in document.meshes for primitive in mesh.primitives
+    ]
+    counts = {
+        "skins": len(document.skins),
+        "animations": len(document.animations),
+        "morph targets": sum(len(each.targets) for each in primitives),
+        "primitives without positions": sum(
+            "POSITION" not in each.attributes for each in primitives
+        ),
+    }
+    return {name: count for name, count in counts.items() if count}

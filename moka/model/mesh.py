@@ -1,0 +1,168 @@
+"""Meshes: primitives with their vertex attributes as NumPy arrays."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from moka.commands.descriptors import Topology
+from moka.core.errors import ModelError
+from moka.material.material import Material
+
+__all__ = ["ATTRIBUTES", "Bounds", "Mesh", "Primitive"]
+
+Bounds = tuple[NDArray[np.float32], NDArray[np.float32]]
+
+# The attributes that moka reads and their components, in this order.
+ATTRIBUTES: dict[str, int] = {
+    "POSITION": 3,
+    "NORMAL": 3,
+    "TANGENT": 4,
+    "TEXCOORD_0": 2,
+    "TEXCOORD_1": 2,
+    "COLOR_0": 4,
+}
+
+
+class Primitive:
+    """Geometry that is drawn with one material.
+
+    ``attributes`` maps names of glTF to float32 arrays of one length:
+    POSITION (N, 3) in metres, NORMAL (N, 3), TANGENT (N, 4) with the sign of
+    the bitangent in w, TEXCOORD_0 and TEXCOORD_1 (N, 2) with v downwards,
+    COLOR_0 (N, 4) linear RGBA. Only POSITION is always there. Arrays read
+    from a file may be read-only, strided, and shared between primitives.
+    ``indices`` is uint32 (M,) or None, ``material`` None for glTF's default.
+    ``vertex_count``, ``index_count`` and ``bounds``, the least and the
+    greatest position, stay after :meth:`release`.
+
+    Raises ModelError for attributes or indices of a wrong shape, positions
+    that are not finite, and indices of vertices that do not exist.
+    """
+
+    __slots__ = (
+        "attributes",
+        "bounds",
+        "index_count",
+        "indices",
+        "material",
+        "topology",
+        "vertex_count",
+    )
+
+    def __init__(
+        self,
+        attributes: Mapping[str, ArrayLike],
+        indices: ArrayLike | None = None,
+        *,
+        topology: Topology = Topology.TRIANGLES,
+        material: Material | None = None,
+    ) -> None:
+        if "POSITION" not in attributes:
+            raise ModelError("a primitive needs the attribute POSITION")
+        self.topology = topology
+        self.material = material
+        self.attributes: dict[str, NDArray[np.float32]] = {
+            name: np.asarray(attributes[name], np.float32)
+            for name in ATTRIBUTES
+            if name in attributes
+        }
+        self.vertex_count = len(self.attributes["POSITION"])
+        for name, array in self.attributes.items():
+            shape = (self.vertex_count, ATTRIBUTES[name])
+            if array.shape != shape:
+                raise ModelError(
+                    f"{name} has the shape {array.shape}, not {shape}"
+                )
+        self.bounds = _bounds(self.attributes["POSITION"])
+        self.indices: NDArray[np.uint32] | None = None
+        self.index_count = 0
+        if indices is not None:
+            self.indices = _checked_indices(indices, self.vertex_count)
+            self.index_count = len(self.indices)
+
+    def __repr__(self) -> str:
+        return (
+            f"Primitive({self.topology.name}, {self.vertex_count} vertices, "
+            f"{self.index_count} indices)"
+        )
+
+    @property
+    def element_count(self) -> int:
+        """Points, lines or triangles that are drawn."""
+        count = self.index_count or self.vertex_count
+        match self.topology:
+            case Topology.POINTS:
+                return count
+            case Topology.LINES:
+                return count // 2
+            case Topology.LINE_LOOP:
+                return count if count > 1 else 0
+            case Topology.LINE_STRIP:
+                return max(0, count - 1)
+            case Topology.TRIANGLES:
+                return count // 3
+        return max(0, count - 2)
+
+    @property
+    def size(self) -> int:
+        """Bytes of the attributes and indices that are still held."""
+        size = 0 if self.indices is None else self.indices.nbytes
+        return size + sum(array.nbytes for array in self.attributes.values())
+
+    def with_material(self, material: Material | None) -> "Primitive":
+        """The same geometry, sharing its arrays, with another material."""
+        copy = object.__new__(Primitive)
+        for name in Primitive.__slots__:
+            setattr(copy, name, getattr(self, name))
+        copy.attributes = dict(self.attributes)
+        copy.material = material
+        return copy
+
+    def release(self) -> None:
+        """Drop the arrays, for instance once the GPU holds them."""
+        self.attributes.clear()
+        self.indices = None
+
+
+@dataclass(slots=True, eq=False)
+class Mesh:
+    """Primitives that nodes place together.
+
+    ``weights`` are the default weights of morph targets.
+    """
+
+    name: str
+    primitives: list[Primitive]
+    weights: list[float] = field(default_factory=list)
+
+
+def _bounds(positions: NDArray[np.float32]) -> Bounds:
+    """From the data and not from what the file says of it."""
+    if not len(positions):
+        raise ModelError("POSITION is empty")
+    least, greatest = positions.min(axis=0), positions.max(axis=0)
+    # Both pass on NaN, and an infinity is an extreme.
+    if not (np.isfinite(least).all() and np.isfinite(greatest).all()):
+        first = np.flatnonzero(~np.isfinite(positions).all(axis=1))[0]
+        raise ModelError(f"POSITION of vertex {first} is not finite")
+    return least, greatest
+
+
+def _checked_indices(
+    indices: ArrayLike, vertex_count: int
+) -> NDArray[np.uint32]:
+    array = np.asarray(indices)
+    if array.ndim != 1 or array.dtype.kind not in "iu":
+        raise ModelError("indices must be integers in one dimension")
+    if not len(array):
+        raise ModelError("indices are empty; leave them out")
+    if not 0 <= array.min() <= array.max() < vertex_count:
+        wrong = (array < 0) | (array >= vertex_count)
+        first = np.flatnonzero(wrong)[0]
+        raise ModelError(
+            f"index {array[first]} at {first} is beyond the {vertex_count} "
+            "vertices"
+        )
+    return array.astype(np.uint32, copy=False)

@@ -1,0 +1,177 @@
+"""The node hierarchy as arrays, without recursion.
+
+Walks up the tree are done for all nodes at once by pointer jumping: each
+round joins every node's path with that of the node at its end, so that a
+tree of depth d takes log2(d) rounds of whole-array operations, whatever its
+shape (Hillis and Steele 1986, "Data Parallel Algorithms").
+"""
+
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.maths import Array, compose
+from moka.model.lights import read_node_lights
+from moka.model.source import GltfSource
+
+__all__ = ["NodeTree", "ancestors", "read_nodes"]
+
+Indices = NDArray[np.int32]
+
+# Beyond this a matrix does not survive the way to the GPU.
+_LARGEST = float(np.finfo(np.float32).max)
+
+
+@dataclass(slots=True, eq=False)
+class NodeTree:
+    """N nodes, ordered so that parents come before their children.
+
+    ``parents`` is the row of the parent, -1 for roots; ``local`` float64
+    (N, 4, 4) matrices from a node's space to its parent's, indexed [row,
+    column]; ``mesh``, ``camera`` and ``light`` what a node places, -1 for
+    nothing; ``source`` the node's index in the file. All but ``names`` and
+    ``local`` are int32 (N,).
+    """
+
+    names: list[str]
+    parents: Indices
+    local: Array
+    mesh: Indices
+    camera: Indices
+    light: Indices
+    source: Indices
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def world_matrices(self) -> Array:
+        """Matrices (N, 4, 4) from each node's space to the model's."""
+        world, jump = self.local.copy(), self.parents.copy()
+        # What overflows here is infinite, and so never inside a frustum.
+        with np.errstate(over="ignore", invalid="ignore"):
+            while len(rows := np.flatnonzero(jump >= 0)):
+                # The right side is gathered before anything is assigned, so
+                # that each round sees the paths of the round before.
+                world[rows] = world[jump[rows]] @ world[rows]
+                jump[rows] = jump[jump[rows]]
+        return world
+
+    def roots(self) -> Indices:
+        """The root (N,) above each node, a root being its own."""
+        return ancestors(self.parents)[0]
+
+
+def ancestors(parents: Indices) -> tuple[Indices, Indices]:
+    """The root above each node and its depth, for ``parents`` (-1 = none).
+
+    Nodes on or below a cycle have no root: -1.
+    """
+    count = len(parents)
+    depth = (parents >= 0).astype(np.int32)
+    end = np.where(parents >= 0, parents, np.arange(count, dtype=np.int32))
+    for _ in range(count.bit_length()):
+        if (parents[end] < 0).all():
+            return end, depth
+        depth += depth[end]
+        end = end[end]
+    return np.where(parents[end] < 0, end, np.int32(-1)), depth
+
+
+def read_nodes(source: GltfSource, light_count: int) -> NodeTree:
+    """The nodes of a document, all scenes together.
+
+    Raises ModelError for references to nothing, a node with two parents, a
+    cycle, or matrices that float32 cannot hold.
+    """
+    document = source.document
+    nodes = document.nodes
+    parents = _parents(source)
+    roots, depth = ancestors(parents)
+    if (roots < 0).any():
+        first = int(np.flatnonzero(roots < 0)[0])
+        raise source.error(f"nodes[{first}]", "is on or below a cycle of nodes")
+    order = np.argsort(depth, kind="stable").astype(np.int32)
+    rows = np.empty(len(nodes) + 1, np.int32)
+    rows[order] = np.arange(len(nodes), dtype=np.int32)
+    rows[-1] = -1  # where a parent of -1 points
+    return NodeTree(
+        names=[nodes[index].name for index in order.tolist()],
+        parents=rows[parents][order],
+        local=_local_matrices(source)[order],
+        mesh=_references(source, "mesh", "meshes", len(document.meshes))[order],
+        camera=_references(source, "camera", "cameras", len(document.cameras))[
+            order
+        ],
+        light=read_node_lights(source, light_count)[order],
+        source=order,
+    )
+
+
+def _parents(source: GltfSource) -> Indices:
+    """The parent of each node of the file, -1 for roots."""
+    nodes = source.document.nodes
+    counts = np.array([len(node.children) for node in nodes], np.int64)
+    children = np.array(
+        list(chain.from_iterable(node.children for node in nodes)), np.int64
+    )
+    owners = np.repeat(np.arange(len(nodes), dtype=np.int32), counts)
+    wrong = np.flatnonzero(children >= len(nodes))
+    if len(wrong):
+        owner = owners[wrong[0]]
+        source.check_index(
+            f"nodes[{owner}].children",
+            int(children[wrong[0]]),
+            "nodes",
+            len(nodes),
+        )
+    twice = np.flatnonzero(np.bincount(children, minlength=1) > 1)
+    if len(twice):
+        first, second = owners[np.flatnonzero(children == twice[0])[:2]]
+        raise source.error(
+            f"nodes[{twice[0]}]",
+            f"has two parents, nodes[{first}] and nodes[{second}]",
+        )
+    parents = np.full(len(nodes), -1, np.int32)
+    parents[children] = owners
+    return parents
+
+
+def _references(
+    source: GltfSource, name: str, kind: str, count: int
+) -> Indices:
+    """What each node of the file places, -1 for nothing."""
+    values = [getattr(node, name) for node in source.document.nodes]
+    indices = np.array(
+        [-1 if value is None else value for value in values], np.int32
+    )
+    wrong = np.flatnonzero(indices >= count)
+    if len(wrong):
+        source.check_index(
+            f"nodes[{wrong[0]}].{name}", int(indices[wrong[0]]), kind, count
+        )
+    return indices
+
+
+def _local_matrices(source: GltfSource) -> Array:
+    """Matrices (N, 4, 4); one that is given takes the place of a TRS."""
+    nodes = source.document.nodes
+    if not nodes:
+        return np.empty((0, 4, 4))
+    matrices = compose(
+        np.array([node.translation for node in nodes]),
+        np.array([node.rotation for node in nodes]),
+        np.array([node.scale for node in nodes]),
+    )
+    given = [row for row, node in enumerate(nodes) if node.matrix is not None]
+    if given:
+        columns = np.array([nodes[row].matrix for row in given])
+        matrices[given] = columns.reshape(-1, 4, 4).transpose(0, 2, 1)
+    too_large = np.abs(matrices).max(axis=(1, 2)) > _LARGEST
+    if too_large.any():
+        first = np.flatnonzero(too_large)[0]
+        raise source.error(
+            f"nodes[{first}]", "its matrix is beyond the range of float32"
+        )
+    return matrices

@@ -1,0 +1,159 @@
+"""From the meshes of a glTF document to arrays of vertices.
+
+Source: glTF 2.0 specification, section 3.7.2 (meshes).
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.descriptors import Topology
+from moka.core.errors import ModelError
+from moka.material.material import Material
+from moka.model import schema
+from moka.model.accessors import AccessorReader
+from moka.model.mesh import ATTRIBUTES, Mesh, Primitive
+from moka.model.source import GltfSource
+
+__all__ = ["read_meshes"]
+
+_TOPOLOGIES = (
+    Topology.POINTS,
+    Topology.LINES,
+    Topology.LINE_LOOP,
+    Topology.LINE_STRIP,
+    Topology.TRIANGLES,
+    Topology.TRIANGLE_STRIP,
+    Topology.TRIANGLE_FAN,
+)
+_TYPES = {2: ("VEC2",), 3: ("VEC3",), 4: ("VEC4",)}
+_UNSIGNED_INT = 5125
+_INDEX_TYPES = (5121, 5123, _UNSIGNED_INT)
+
+
+def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
+    """All meshes; primitives without positions, which show nothing, are not
+    kept (section 3.7.2.1).
+
+    Raises ModelError naming the JSON path of what is wrong.
+    """
+    accessors = AccessorReader(source)
+    meshes = []
+    for index, mesh in enumerate(source.document.meshes):
+        primitives = [
+            _read_primitive(
+                source,
+                accessors,
+                materials,
+                f"meshes[{index}].primitives[{number}]",
+                primitive,
+            )
+            for number, primitive in enumerate(mesh.primitives)
+            if "POSITION" in primitive.attributes
+        ]
+        meshes.append(Mesh(mesh.name, primitives, mesh.weights))
+    return meshes
+
+
+def _read_primitive(
+    source: GltfSource,
+    accessors: AccessorReader,
+    materials: list[Material],
+    path: str,
+    primitive: schema.Primitive,
+) -> Primitive:
+    attributes = {}
+    for name in ATTRIBUTES:
+        index = primitive.attributes.get(name)
+        if index is not None:
+            attributes[name] = _read_attribute(
+                source, accessors, f"{path}.attributes.{name}", name, index
+            )
+            _check_count(source, path, name, attributes)
+    if "NORMAL" not in attributes:
+        # Flat normals take their place, to which tangents do not belong.
+        attributes.pop("TANGENT", None)
+    indices = None
+    if primitive.indices is not None:
+        indices = _read_indices(
+            source, accessors, f"{path}.indices", primitive.indices
+        )
+    material = None
+    if primitive.material is not None:
+        source.check_index(
+            f"{path}.material", primitive.material, "materials", len(materials)
+        )
+        material = materials[primitive.material]
+    try:
+        return Primitive(
+            attributes,
+            indices,
+            topology=_TOPOLOGIES[primitive.mode],
+            material=material,
+        )
+    except ModelError as error:
+        raise source.error(path, str(error)) from error
+
+
+def _read_attribute(
+    source: GltfSource,
+    accessors: AccessorReader,
+    path: str,
+    name: str,
+    index: int,
+) -> NDArray[np.float32]:
+    """One attribute; a colour without alpha becomes opaque."""
+    accessor = _accessor(source, path, index)
+    types = ("VEC3", "VEC4") if name == "COLOR_0" else _TYPES[ATTRIBUTES[name]]
+    if accessor.type not in types:
+        raise source.error(
+            path,
+            f"accessors[{index}] is {accessor.type}, not {' or '.join(types)}",
+        )
+    if accessor.component_type == _UNSIGNED_INT:
+        raise source.error(
+            path, f"accessors[{index}] has 32-bit integers, which none may have"
+        )
+    array = accessors.floats(index)
+    if name == "COLOR_0" and accessor.type == "VEC3":
+        opaque = np.ones((len(array), 4), np.float32)
+        opaque[:, :3] = array
+        return opaque
+    return array
+
+
+def _read_indices(
+    source: GltfSource, accessors: AccessorReader, path: str, index: int
+) -> NDArray[Any]:
+    accessor = _accessor(source, path, index)
+    if (
+        accessor.type != "SCALAR"
+        or accessor.component_type not in _INDEX_TYPES
+        or accessor.normalized
+    ):
+        raise source.error(
+            path, f"accessors[{index}] must hold plain unsigned scalars"
+        )
+    return accessors.array(index)
+
+
+def _accessor(source: GltfSource, path: str, index: int) -> schema.Accessor:
+    accessors = source.document.accessors
+    source.check_index(path, index, "accessors", len(accessors))
+    return accessors[index]
+
+
+def _check_count(
+    source: GltfSource,
+    path: str,
+    name: str,
+    attributes: dict[str, NDArray[np.float32]],
+) -> None:
+    """Raise ModelError unless attribute ``name`` fits the positions."""
+    count, expected = len(attributes[name]), len(attributes["POSITION"])
+    if count != expected:
+        raise source.error(
+            f"{path}.attributes.{name}",
+            f"has {count} elements, POSITION has {expected}",
+        )
