@@ -100,7 +100,8 @@ class GraphicsContext:
     def make_current(self) -> None:
         """Take the context to this thread.
 
-        Raises ContextError if a living thread has not released it.
+        Raises ContextError if a living thread has not released it, or if
+        the driver keeps it for a thread that ended without releasing it.
         """
         self._check_thread()
         self._native.make_current()
@@ -120,8 +121,6 @@ class GraphicsContext:
         if self._closed:
             return
         self._check_thread()
-        if self._debug is not None and self._owner is not None:
-            self._debug.stop()
         self._closed = True
         self._owner = None
         self._functions.clear()

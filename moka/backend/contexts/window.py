@@ -38,6 +38,16 @@ class WindowContext(GraphicsContext):
 
         glfw.swap_buffers(self._window)
 
+    def close(self) -> None:
+        """As for every context; what the driver holds dies with the window.
+
+        So the driver must forget where to report messages.
+        """
+        if self._debug is not None and not self._closed:
+            self.make_current()
+            self._debug.stop()
+        super().close()
+
 
 class _GlfwContext(NativeContext):
     """The context that GLFW made together with its window."""
