@@ -6,12 +6,6 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 ARGS ?=
 
-# Window tests need a display; without one they get a virtual one.
-ifeq ($(DISPLAY)$(WAYLAND_DISPLAY),)
-WITH_DISPLAY = $$(command -v xvfb-run >/dev/null && \
-	echo xvfb-run --auto-servernum --server-args="-screen 0 1280x1024x24")
-endif
-
 .PHONY: demo test lint format types docs bench clean
 
 demo: $(VENV)/.dev
@@ -19,7 +13,7 @@ demo: $(VENV)/.dev
 	@echo "wrote demo.png"
 
 test: $(VENV)/.dev
-	$(WITH_DISPLAY) $(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest $(ARGS)
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
