@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from moka.backend import gl_constants as c
 from moka.backend.batching import INDIRECT, Batches, MeshTable, merge_draws
-from moka.backend.contexts import GraphicsContext
+from moka.backend.contexts import GraphicsContext, WindowContext
 from moka.backend.gl_functions import Functions
 from moka.backend.gl_programs import (
     Bindings,
@@ -231,6 +231,8 @@ class ModernGLBackend:
 
     def present(self) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
+        if not isinstance(self._context, WindowContext):
+            raise DeviceError("only the device of a window can present")
         self._context.swap()
 
     def close(self) -> None:
@@ -405,7 +407,6 @@ class ModernGLBackend:
         if handle is None:
             self._state.framebuffer(0)
             self._target = None
-            self._state.viewport((0, 0, *self._context.framebuffer_size))
             return
         self._target = self._get(handle)
         self._state.framebuffer(self._target.name)
@@ -453,9 +454,9 @@ class ModernGLBackend:
         return self._explain(log, text)
 
     def _check_errors(self, what: str) -> None:
-        errors = self._context.take_errors()
-        if errors:
-            raise DeviceError(f"{what}: OpenGL reports {errors[0]}")
+        for message in self._context.drain_debug_messages():
+            if message.is_error:
+                raise DeviceError(f"{what}: OpenGL reports {message}")
 
 
 def _read_info(context: GraphicsContext, *, multi_draw: bool) -> BackendInfo:

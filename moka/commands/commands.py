@@ -31,7 +31,8 @@ __all__ = [
 class BindFramebuffer:
     """Draw into ``framebuffer``; None is the window.
 
-    Also resets viewport and scissor to the whole of it.
+    Also ends the scissor and sets the viewport to the whole of it; a window
+    changes its size on another thread, so there the viewport is yours.
     """
 
     framebuffer: Handle | None

@@ -5,13 +5,19 @@ writes. Stages may overlap, since decoding runs in worker threads while the
 render thread compiles, so that their sum can exceed the total.
 """
 
+import json
+import sys
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
-__all__ = ["Statistics"]
+from moka.core.errors import MokaError
+from moka.version import __version__
+
+__all__ = ["Statistics", "write_statistics"]
 
 
 class Statistics:
@@ -54,3 +60,40 @@ class Statistics:
     def total_ms(self) -> float:
         """Milliseconds since this object was made."""
         return 1000.0 * (time.perf_counter() - self._started)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The content of the statistics file; see docs."""
+        with self._lock:
+            return {
+                "moka": __version__,
+                "gl": dict(self.gl),
+                "stages_ms": {
+                    name: round(value, 3)
+                    for name, value in self.stages_ms.items()
+                },
+                "total_ms": round(self.total_ms, 3),
+                "peak_rss_mb": _peak_memory_mb(),
+                "counts": dict(self.counts),
+                "lighting": dict(self.lighting),
+            }
+
+
+def write_statistics(statistics: Statistics, path: Path) -> None:
+    """Write the statistics as JSON; raises MokaError if it cannot."""
+    text = json.dumps(statistics.as_dict(), indent=2) + "\n"
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise MokaError(f"{path}: cannot write: {error.strerror}") from error
+
+
+def _peak_memory_mb() -> float | None:
+    """The largest resident set of this process, where the system tells."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    # Kibibytes on Linux, bytes on macOS.
+    unit = 1 << 20 if sys.platform == "darwin" else 1 << 10
+    return round(peak / unit, 1)

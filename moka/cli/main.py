@@ -1,0 +1,94 @@
+"""Parses the command line and turns errors into one line each."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from moka.core.errors import MokaError, OptionError
+from moka.version import __version__
+
+__all__ = ["main"]
+
+USER_ERROR = 2
+INTERNAL_ERROR = 1
+INTERRUPTED = 130
+
+
+class _Parser(argparse.ArgumentParser):
+    """Raises OptionError where argparse would print usage and exit."""
+
+    def error(self, message: str) -> NoReturn:
+        raise OptionError(f"{message} (see {self.prog} --help)")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code.
+
+    ``arguments`` are those after the program's name, by default those of
+    the process.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    debug = "--debug" in given
+    try:
+        parsed = _parser().parse_args(given)
+        return int(parsed.execute(parsed))
+    except MokaError as error:
+        return _fail(str(error), USER_ERROR, debug=debug)
+    except KeyboardInterrupt:
+        return _fail("interrupted", INTERRUPTED, debug=debug)
+    except BrokenPipeError:
+        # Whoever read our output has gone; that is not an error.
+        sys.stderr.close()
+        return 0
+    except Exception as error:
+        kind = type(error).__name__
+        return _fail(
+            f"internal error: {kind}: {error}; run again with --debug and "
+            "report the traceback",
+            INTERNAL_ERROR,
+            debug=debug,
+        )
+
+
+def _parser() -> argparse.ArgumentParser:
+    from moka.cli import doctor, info, render
+
+    parser = _Parser(
+        prog="moka",
+        description="Render glTF scenes with physically based shading.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "--version", action="version", version=f"moka {__version__}"
+    )
+    commands = parser.add_subparsers(
+        title="commands", metavar="COMMAND", required=True
+    )
+    for name, module in (
+        ("render", render),
+        ("info", info),
+        ("doctor", doctor),
+    ):
+        summary = (module.__doc__ or "").splitlines()[0]
+        command = commands.add_parser(
+            name, help=summary, description=summary, allow_abbrev=False
+        )
+        command.add_argument(
+            "--debug",
+            action="store_true",
+            help="show the traceback of an error, and check every GL call",
+        )
+        module.add_arguments(command)
+        command.set_defaults(execute=module.execute)
+    return parser
+
+
+def _fail(message: str, code: int, *, debug: bool) -> int:
+    if debug:
+        import traceback
+
+        traceback.print_exc()
+    line = " ".join(message.split())
+    print(f"moka: error: {line}", file=sys.stderr)
+    return code

@@ -1,0 +1,231 @@
+"""Render one picture of a glTF model, or of the built-in scene."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from moka.core.errors import OptionError
+
+if TYPE_CHECKING:
+    from moka.app.render import RenderRequest
+
+__all__ = ["add_arguments", "execute"]
+
+MAXIMUM_SIDE = 16384
+SUFFIXES = (".png", ".exr")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``moka render``."""
+    add = parser.add_argument
+    add(
+        "model",
+        metavar="MODEL",
+        nargs="?",
+        help=".gltf or .glb file (default: the built-in demo scene)",
+    )
+    add(
+        "-o",
+        "--output",
+        metavar="PATH",
+        type=Path,
+        action="append",
+        help=".png or .exr file, repeatable (default: moka.png)",
+    )
+    add(
+        "--size",
+        metavar="WxH",
+        type=_size,
+        default=(1280, 720),
+        help="pixels (default: 1280x720)",
+    )
+    add(
+        "--environment",
+        metavar="PATH|NAME",
+        default="studio",
+        help=".hdr or .exr equirectangular map, or studio, sky, furnace, "
+        "none (default: studio)",
+    )
+    add(
+        "--environment-rotation",
+        metavar="DEG",
+        type=_number,
+        default=0.0,
+        help="counter-clockwise about +Y (default: 0)",
+    )
+    add(
+        "--environment-intensity",
+        metavar="X",
+        type=_number,
+        default=1.0,
+        help="radiance multiplier (default: 1)",
+    )
+    add(
+        "--background",
+        metavar="WHAT",
+        default="environment",
+        help="environment, transparent or #rrggbb (default: environment)",
+    )
+    add(
+        "--camera",
+        metavar="CAMERA",
+        help="name or index of a glTF camera, or "
+        "orbit:YAW,PITCH[,DISTANCE] in degrees",
+    )
+    add(
+        "--exposure",
+        metavar="EV",
+        type=_number,
+        default=0.0,
+        help="stops (default: 0)",
+    )
+    add(
+        "--tone-map",
+        metavar="NAME",
+        default="neutral",
+        help="neutral, aces, agx, reinhard, exponential, none "
+        "(default: neutral)",
+    )
+    add(
+        "--samples",
+        metavar="N",
+        type=_count,
+        default=4,
+        help="multisampling, 1 turns it off (default: 4)",
+    )
+    add(
+        "--multiscatter",
+        choices=("on", "off"),
+        default="on",
+        help="energy compensation for multiple scattering (default: on)",
+    )
+    add(
+        "--brdf",
+        metavar="NAME",
+        default="gltf",
+        help="gltf, karis, blinn-phong (default: gltf)",
+    )
+    add(
+        "--diffuse",
+        metavar="NAME",
+        default="lambert",
+        help="lambert, oren-nayar, burley (default: lambert)",
+    )
+    add(
+        "--half",
+        action="store_true",
+        help="write half floats into .exr files",
+    )
+    add(
+        "--stats",
+        metavar="PATH.json",
+        type=Path,
+        help="write stage times and counters",
+    )
+    add(
+        "--backend",
+        choices=("auto", "egl", "osmesa", "window"),
+        default="auto",
+        help="GL context (default: auto)",
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Render and write every output, or write none and raise MokaError."""
+    outputs = arguments.output or [Path("moka.png")]
+    _check_outputs(outputs, arguments.stats)
+    request = _request(arguments)
+
+    from moka.app.render import render_request
+    from moka.core.statistics import Statistics, write_statistics
+
+    statistics = Statistics()
+    suffixes = {path.suffix.lower() for path in outputs}
+    image = render_request(
+        request,
+        statistics,
+        want_pixels=".exr" in suffixes,
+        want_display=".png" in suffixes,
+        debug=arguments.debug,
+    )
+    with statistics.stage("encode"):
+        image.save_all(
+            outputs,
+            tone_map=request.settings.tone_map,
+            exposure=request.settings.exposure,
+            half=arguments.half,
+        )
+    if arguments.stats:
+        write_statistics(statistics, arguments.stats)
+    return 0
+
+
+def _request(arguments: argparse.Namespace) -> "RenderRequest":
+    from moka.app.render import RenderRequest
+    from moka.renderer.settings import RenderSettings
+
+    if arguments.environment_intensity < 0:
+        raise OptionError("--environment-intensity: must not be negative")
+    return RenderRequest(
+        source=arguments.model,
+        environment=arguments.environment,
+        environment_rotation=math.radians(arguments.environment_rotation),
+        environment_intensity=arguments.environment_intensity,
+        background=arguments.background,
+        camera=arguments.camera,
+        size=arguments.size,
+        settings=RenderSettings(
+            exposure=arguments.exposure,
+            tone_map=arguments.tone_map,
+            samples=arguments.samples,
+            brdf=arguments.brdf,
+            diffuse=arguments.diffuse,
+            multiscatter=arguments.multiscatter == "on",
+        ),
+        backend=arguments.backend,
+    )
+
+
+def _check_outputs(outputs: list[Path], statistics: Path | None) -> None:
+    """Find out that a file cannot be written before the work is done."""
+    for path in outputs:
+        if path.suffix.lower() not in SUFFIXES:
+            raise OptionError(
+                f"{path}: the output needs the ending .png or .exr"
+            )
+    for path in [*outputs, *([statistics] if statistics else [])]:
+        if not path.parent.is_dir():
+            raise OptionError(f"{path}: the folder {path.parent} is missing")
+        if path.is_dir():
+            raise OptionError(f"{path}: is a folder")
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not WIDTHxHEIGHT, such as 1280x720"
+        )
+    size = int(width), int(height)
+    if not all(1 <= side <= MAXIMUM_SIDE for side in size):
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: each side must be from 1 to {MAXIMUM_SIDE}"
+        )
+    return size
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
+    return value
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not 1, 2, 3, ...")
+    return int(text)

@@ -1,0 +1,95 @@
+"""What a frame is drawn into: a float target, its samples, the display.
+
+Draws go into a linear float target, multisampled or not; samples are
+averaged there, in linear radiance; tone mapping comes last and once.
+"""
+
+from dataclasses import dataclass
+
+from moka.commands.descriptors import (
+    Attachment,
+    FramebufferDescriptor,
+    PixelFormat,
+    TextureDescriptor,
+)
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+
+__all__ = ["Targets", "make_targets"]
+
+
+@dataclass(frozen=True, slots=True)
+class Targets:
+    """The framebuffers of one picture size and how many samples they have.
+
+    ``scene`` is drawn into, ``resolved`` holds one radiance per pixel (the
+    same framebuffer without multisampling), ``display`` tone mapped bytes.
+    """
+
+    size: tuple[int, int]
+    samples: int
+    colour_format: PixelFormat
+    scene: Handle
+    resolved: Handle
+    resolved_texture: Handle
+    display: Handle
+    resources: tuple[Handle, ...]
+
+    def destroy(self, device: GraphicsDevice) -> None:
+        """Destroy all of it."""
+        device.destroy(*self.resources)
+
+
+def make_targets(
+    device: GraphicsDevice,
+    size: tuple[int, int],
+    samples: int,
+    *,
+    float_output: bool,
+) -> Targets:
+    """Targets of ``size`` (width, height).
+
+    Half floats hold radiance up to 65 504, which the display never needs;
+    float32 is for pictures whose values leave as numbers.
+    """
+    colour_format = PixelFormat.RGBA32F if float_output else PixelFormat.RGBA16F
+    resources: list[Handle] = []
+
+    def texture(pixels: PixelFormat, count: int = 1) -> Handle:
+        handle = device.create_texture(
+            TextureDescriptor(
+                pixels, *size, samples=count, label=f"target {pixels.value}"
+            )
+        )
+        resources.append(handle)
+        return handle
+
+    def framebuffer(colour: Handle, depth: Handle | None = None) -> Handle:
+        handle = device.create_framebuffer(
+            FramebufferDescriptor(
+                (Attachment(colour),),
+                None if depth is None else Attachment(depth),
+            )
+        )
+        resources.append(handle)
+        return handle
+
+    resolved_texture = texture(colour_format)
+    depth = texture(PixelFormat.DEPTH32F, samples)
+    if samples > 1:
+        scene = framebuffer(texture(colour_format, samples), depth)
+        resolved = framebuffer(resolved_texture)
+    else:
+        scene = resolved = framebuffer(resolved_texture, depth)
+    display = framebuffer(texture(PixelFormat.RGBA8))
+    return Targets(
+        size,
+        samples,
+        colour_format,
+        scene,
+        resolved,
+        resolved_texture,
+        display,
+        # Framebuffers before the textures that they draw into.
+        tuple(reversed(resources)),
+    )
