@@ -446,8 +446,9 @@ def _gather_instances(draws: Draws, instances: Instances) -> Instances:
     counts = draws["instance_count"].astype(np.int64)
     total = int(counts.sum())
     starts = np.cumsum(counts) - counts
-    if total == len(draws):
-        rows = draws["first_instance"]
+    if (counts == 1).all():
+        # A copy, since the column is written below.
+        rows = draws["first_instance"].astype(np.int64)
     else:
         shift = draws["first_instance"].astype(np.int64) - starts
         rows = np.arange(total) + np.repeat(shift, counts)
