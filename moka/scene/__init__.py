@@ -1,0 +1,1 @@
+"""What is in the world: transforms, cameras, lights, models, visibility."""
