@@ -20,7 +20,7 @@ from moka.commands.descriptors import ShaderText
 from moka.core.errors import ShaderError
 from moka.core.resources import shader_folder
 
-__all__ = ["explain_log", "load_shader"]
+__all__ = ["explain_log", "load_shader", "preprocess_shader"]
 
 LINES_PER_FILE = 10_000
 
@@ -59,12 +59,28 @@ def load_shader(
     condition (a later one would be skipped as already done) and defines
     that are not named ``MOKA_...`` or do not fit on a line.
     """
-    head = [f"#version {version} core"]
-    head += [_define(name, *item) for item in sorted(defines.items())]
-    head += injected.splitlines()
     reader = _Reader(folder or shader_folder(), name)
-    body = list(reader.expand(name, opened=()))
-    return ShaderText("\n".join(head + body) + "\n", tuple(reader.files))
+    head = _head(name, defines, injected, version)
+    return reader.text(head, reader.expand(name, reader.lines(name)))
+
+
+def preprocess_shader(
+    source: str,
+    defines: Mapping[str, str | int] = _NO_DEFINES,
+    *,
+    name: str = "inline shader",
+    injected: str = "",
+    version: int = 330,
+    folder: Path | None = None,
+) -> ShaderText:
+    """As :func:`load_shader`, for a ``source`` in memory.
+
+    ``name`` stands for it in messages; its includes are files.
+    """
+    reader = _Reader(folder or shader_folder(), name)
+    head = _head(name, defines, injected, version)
+    lines = tuple(source.splitlines())
+    return reader.text(head, reader.expand(name, lines))
 
 
 def explain_log(log: str, text: ShaderText) -> str:
@@ -92,6 +108,19 @@ def _position(line: int, text: ShaderText) -> str:
     return f"line {line}"
 
 
+def _head(
+    shader: str,
+    defines: Mapping[str, str | int],
+    injected: str,
+    version: int,
+) -> list[str]:
+    return [
+        f"#version {version} core",
+        *(_define(shader, *item) for item in sorted(defines.items())),
+        *injected.splitlines(),
+    ]
+
+
 def _define(shader: str, name: str, value: str | int) -> str:
     if not _DEFINE_NAME.fullmatch(name):
         raise ShaderError(
@@ -113,11 +142,14 @@ class _Reader:
         self._folder = folder
         self.files = [f"{name} (generated head)"]
 
+    def text(self, head: list[str], body: Iterator[str]) -> ShaderText:
+        source = "\n".join([*head, *body]) + "\n"
+        return ShaderText(source, tuple(self.files))
+
     def expand(
-        self, name: str, opened: tuple[str, ...], where: str = ""
+        self, name: str, lines: tuple[str, ...], opened: tuple[str, ...] = ()
     ) -> Iterator[str]:
-        """The lines of ``name``, included from ``where``."""
-        lines = self._lines(name, where)
+        """The ``lines`` of ``name`` and, in their place, its includes."""
         number = len(self.files)
         self.files.append(name)
         depth = 0
@@ -130,12 +162,15 @@ class _Reader:
                 yield line
                 continue
             here = f"{name}:{count}"
-            self._check_include(include[1], depth, (*opened, name), here)
+            chain = (*opened, name)
+            self._check_include(include[1], depth, chain, here)
             if include[1] not in self.files:
-                yield from self.expand(include[1], (*opened, name), here)
+                included = self.lines(include[1], here)
+                yield from self.expand(include[1], included, chain)
             yield self._line_directive(number, count + 1)
 
-    def _lines(self, name: str, where: str) -> tuple[str, ...]:
+    def lines(self, name: str, where: str = "") -> tuple[str, ...]:
+        """The lines of file ``name``, included from ``where``."""
         path = self._folder / name
         try:
             return _read_lines(path)

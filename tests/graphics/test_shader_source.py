@@ -7,7 +7,11 @@ import pytest
 from moka.commands.descriptors import ShaderText
 from moka.core.errors import ShaderError
 from moka.core.resources import shader_folder
-from moka.graphics.shader_source import explain_log, load_shader
+from moka.graphics.shader_source import (
+    explain_log,
+    load_shader,
+    preprocess_shader,
+)
 
 
 @pytest.fixture
@@ -71,6 +75,25 @@ def test_a_file_included_twice_appears_once_and_lines_are_counted(folder):
         "#line 30002 3",
         "b2",
         "#line 10003 1",
+        "main",
+    ]
+
+
+def test_a_source_in_memory_includes_files(folder):
+    write(folder, a="a1\n")
+    text = preprocess_shader(
+        '#include "include/a.glsl"\nmain\n',
+        {"MOKA_A": 1},
+        name="triangle",
+        folder=folder,
+    )
+    assert text.files[1:] == ("triangle", "include/a.glsl")
+    assert text.source.splitlines()[1:] == [
+        "#define MOKA_A 1",
+        "#line 10001 1",
+        "#line 20001 2",
+        "a1",
+        "#line 10002 1",
         "main",
     ]
 
