@@ -147,7 +147,9 @@ def _wrap(native: NativeContext) -> "moderngl.Context":
     settings: dict[str, Any] = {"context": native}
     try:
         gl = moderngl.create_context(
-            require=_REQUIRED_VERSION, standalone=True, **settings
+            require=_REQUIRED_VERSION,
+            standalone=not native.has_surface,
+            **settings,
         )
     except (ValueError, moderngl.Error) as error:
         raise ContextError(f"{native.label}: {error}") from error

@@ -20,6 +20,8 @@ class NativeContext(ABC):
 
     kind: str
     label: str
+    # Whether framebuffer 0 can be drawn into.
+    has_surface = False
 
     @abstractmethod
     def make_current(self) -> None:

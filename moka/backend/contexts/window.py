@@ -54,6 +54,7 @@ class _GlfwContext(NativeContext):
 
     kind = "window"
     label = "window"
+    has_surface = True
 
     def __init__(self, window: Any) -> None:
         self._window = window

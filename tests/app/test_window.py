@@ -1,0 +1,278 @@
+"""A real window on a real display: pictures out, events in."""
+
+import ctypes
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+import numpy as np
+import pytest
+from PIL import ImageGrab
+
+from moka.app import window as window_module
+from moka.app.events import (
+    CloseEvent,
+    Event,
+    KeyEvent,
+    MouseButtonEvent,
+    MouseMoveEvent,
+    ResizeEvent,
+    ScrollEvent,
+    TextEvent,
+)
+from moka.app.keys import Key, Modifiers, MouseButton
+from moka.app.window import Window
+from moka.backend.contexts import WindowContext
+from moka.core.errors import ContextError
+from tests.support.display import running_display
+
+pytestmark = pytest.mark.window
+
+WAIT_S = 10.0
+
+Kind = TypeVar("Kind", bound=Event)
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[str]:
+    glfw = pytest.importorskip("glfw")
+    with running_display() as name:
+        yield name
+        glfw.terminate()
+
+
+@pytest.fixture
+def window(display: str) -> Iterator[Window]:  # noqa: ARG001
+    with Window("test", (200, 100), vsync=False, debug=True) as window:
+        yield window
+
+
+@pytest.fixture
+def render_thread() -> Iterator[ThreadPoolExecutor]:
+    with ThreadPoolExecutor(1, thread_name_prefix="render") as thread:
+        yield thread
+
+
+def wait_for(
+    window: Window,
+    kind: type[Kind],
+    is_last: Callable[[list[Kind]], bool] = bool,
+) -> list[Kind]:
+    """The events of one kind until ``is_last`` accepts those so far."""
+    found: list[Kind] = []
+    deadline = time.monotonic() + WAIT_S
+    while not is_last(found):
+        assert time.monotonic() < deadline, f"only {found} came"
+        time.sleep(0.005)
+        found += [each for each in window.poll() if isinstance(each, kind)]
+    return found
+
+
+def reached(x: float, y: float) -> Callable[[list[MouseMoveEvent]], bool]:
+    """Whether the pointer has come to a place."""
+    return lambda moves: bool(moves) and (moves[-1].x, moves[-1].y) == (x, y)
+
+
+def act(commands: str) -> str:
+    """Let xdotool act like a person at the mouse and the keyboard."""
+    if shutil.which("xdotool") is None:
+        pytest.skip("there is no xdotool")
+    return subprocess.run(
+        ["xdotool", *commands.split()],
+        check=True,
+        timeout=WAIT_S,
+        capture_output=True,
+        text=True,
+    ).stdout
+
+
+def click_on_the_cross(title: str) -> None:
+    """Send what a window manager sends (ICCCM 4.2.8.1, WM_DELETE_WINDOW)."""
+    target = int(act(f"search --name ^{title}$"))
+    x11 = ctypes.CDLL("libX11.so.6")
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    x11.XInternAtom.restype = ctypes.c_ulong
+    connection = ctypes.c_void_p(x11.XOpenDisplay(None))
+    protocols = x11.XInternAtom(connection, b"WM_PROTOCOLS", 0)
+    delete = x11.XInternAtom(connection, b"WM_DELETE_WINDOW", 0)
+    # An XClientMessageEvent, whose type is 33 and whose data are 32 bits.
+    event = (ctypes.c_long * 24)(33, 0, 1, 0, target, protocols, 32, delete)
+    x11.XSendEvent(connection, ctypes.c_ulong(target), 0, 0, event)
+    x11.XCloseDisplay(connection)
+
+
+def paint(context: WindowContext, size: tuple[int, int]) -> None:
+    """The left half red, the upper right blue, the rest green; shown."""
+    width, height = size
+    screen = context.gl.screen
+    screen.viewport = (0, 0, width, height)
+    screen.clear(0, 1, 0)
+    screen.clear(1, 0, 0, viewport=(0, 0, width // 2, height))
+    top_right = (width // 2, height // 2, width // 2, height // 2)
+    screen.clear(0, 0, 1, viewport=top_right)
+    context.swap()
+
+
+def screenshot(display: str, size: tuple[int, int]) -> np.ndarray:
+    """What the upper left of the screen shows, (height, width, 3)."""
+    box = (0, 0, *size)
+    image = ImageGrab.grab(bbox=box, xdisplay=display)
+    return np.asarray(image.convert("RGB"))
+
+
+def test_another_thread_draws_what_the_screen_shows(
+    display: str, window: Window, render_thread: ThreadPoolExecutor
+) -> None:
+    size = window.framebuffer_size
+    assert size == (200, 100)
+    context = render_thread.submit(window.context_factory()).result()
+    assert context.kind == "window"
+    render_thread.submit(paint, context, size).result()
+    deadline = time.monotonic() + WAIT_S
+    while not screenshot(display, size)[50, 50].any():
+        assert time.monotonic() < deadline
+        window.poll()
+    pixels = screenshot(display, size)
+    assert (pixels[:, :100] == (255, 0, 0)).all()
+    assert (pixels[:50, 100:] == (0, 0, 255)).all()
+    assert (pixels[50:, 100:] == (0, 255, 0)).all()
+    assert context.drain_debug_messages() == []
+    render_thread.submit(context.close).result()
+
+
+def test_a_window_stays_while_a_thread_draws_into_it(
+    window: Window, render_thread: ThreadPoolExecutor
+) -> None:
+    context = render_thread.submit(window.context_factory()).result()
+    with pytest.raises(ContextError, match="belongs to thread render"):
+        window.close()
+    render_thread.submit(context.close).result()
+    window.close()
+    window.close()
+    assert window.should_close
+
+
+def test_windows_follow_one_another(
+    display: str,  # noqa: ARG001
+    render_thread: ThreadPoolExecutor,
+) -> None:
+    for _ in range(3):
+        with Window("test", (64, 64), visible=False, vsync=False) as window:
+            context = render_thread.submit(window.context_factory()).result()
+            render_thread.submit(paint, context, (64, 64)).result()
+            render_thread.submit(context.close).result()
+
+
+def test_keys(window: Window) -> None:
+    act("mousemove 50 50 key a shift+Left F5 KP_3")
+    keys = wait_for(
+        window,
+        KeyEvent,
+        lambda keys: any(each.key is Key.KEYPAD_3 for each in keys),
+    )
+    assert [(each.key, each.pressed) for each in keys[:2]] == [
+        (Key.A, True),
+        (Key.A, False),
+    ]
+    modifiers = {each.key: each.modifiers for each in keys if each.pressed}
+    assert modifiers[Key.A] is Modifiers.NONE
+    assert modifiers[Key.LEFT] is Modifiers.SHIFT
+    assert {Key.F5, Key.LEFT_SHIFT} <= set(modifiers)
+
+
+def test_text(window: Window) -> None:
+    act("mousemove 50 50 key a Left shift+b exclam")
+    typed = wait_for(window, TextEvent, lambda typed: len(typed) == 3)
+    assert "".join(each.text for each in typed) == "aB!"
+
+
+def test_motion_adds_up(window: Window) -> None:
+    act("mousemove 20 30")
+    wait_for(window, MouseMoveEvent, reached(20, 30))
+    act("mousemove 50 10 mousemove 60 40 mousemove 25 31")
+    moves = wait_for(window, MouseMoveEvent, reached(25, 31))
+    assert sum(each.dx for each in moves) == 5
+    assert sum(each.dy for each in moves) == 1
+
+
+def test_buttons(window: Window) -> None:
+    act("mousemove 50 10 click 1 click 3 click 2")
+    events = wait_for(window, MouseButtonEvent, lambda each: len(each) == 6)
+    assert events == [
+        MouseButtonEvent(button, pressed, 50.0, 10.0, Modifiers.NONE)
+        for button in (MouseButton.LEFT, MouseButton.RIGHT, MouseButton.MIDDLE)
+        for pressed in (True, False)
+    ]
+
+
+def test_the_wheel(window: Window) -> None:
+    act("mousemove 50 10 click 4 click 5")
+    turns = wait_for(window, ScrollEvent, lambda turns: len(turns) == 2)
+    assert turns == [ScrollEvent(0.0, 1.0), ScrollEvent(0.0, -1.0)]
+
+
+def test_a_new_size(window: Window) -> None:
+    act("search --name ^test$ windowsize 160 90")
+    wait_for(window, ResizeEvent, lambda sizes: ResizeEvent(160, 90) in sizes)
+    assert window.framebuffer_size == (160, 90)
+    assert window.size == (160, 90)
+
+
+def test_a_click_on_the_cross(window: Window) -> None:
+    assert not window.should_close
+    click_on_the_cross("test")
+    wait_for(window, CloseEvent)
+    assert window.should_close
+
+
+def test_a_request_to_close(window: Window) -> None:
+    window.request_close()
+    assert window.should_close
+
+
+def test_the_title_changes(window: Window) -> None:
+    window.set_title("other")
+    act("search --name ^other$")
+
+
+@pytest.mark.usefixtures("display")
+def test_only_the_main_thread_makes_windows() -> None:
+    errors: list[ContextError] = []
+
+    def open_window() -> None:
+        with pytest.raises(ContextError, match="main thread") as info:
+            Window()
+        errors.append(info.value)
+
+    thread = threading.Thread(target=open_window)
+    thread.start()
+    thread.join()
+    assert errors
+
+
+def test_without_glfw_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "glfw", None)
+    with pytest.raises(ContextError, match=r"moka-pbr\[window\]"):
+        Window()
+
+
+def test_without_a_display_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    glfw = pytest.importorskip("glfw")
+    glfw.terminate()
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    with pytest.raises(ContextError, match="run with a display") as info:
+        Window()
+    assert "\n" not in str(info.value)
+
+
+def test_every_key_has_a_code() -> None:
+    pytest.importorskip("glfw")
+    assert set(window_module._keys().values()) == set(Key)
