@@ -10,7 +10,7 @@ from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
 from moka.material.material import Material
 
-__all__ = ["ATTRIBUTES", "Bounds", "Mesh", "Primitive"]
+__all__ = ["ATTRIBUTES", "TOPOLOGIES", "Bounds", "Mesh", "Primitive"]
 
 Bounds = tuple[NDArray[np.float32], NDArray[np.float32]]
 
@@ -23,6 +23,17 @@ ATTRIBUTES: dict[str, int] = {
     "TEXCOORD_1": 2,
     "COLOR_0": 4,
 }
+
+# The topologies in the order of glTF's modes 0 to 6.
+TOPOLOGIES = (
+    Topology.POINTS,
+    Topology.LINES,
+    Topology.LINE_LOOP,
+    Topology.LINE_STRIP,
+    Topology.TRIANGLES,
+    Topology.TRIANGLE_STRIP,
+    Topology.TRIANGLE_FAN,
+)
 
 
 class Primitive:

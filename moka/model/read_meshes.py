@@ -8,25 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
 from moka.material.material import Material
 from moka.model import schema
 from moka.model.accessors import AccessorReader
-from moka.model.mesh import ATTRIBUTES, Mesh, Primitive
+from moka.model.mesh import ATTRIBUTES, TOPOLOGIES, Mesh, Primitive
 from moka.model.source import GltfSource
 
 __all__ = ["read_meshes"]
 
-_TOPOLOGIES = (
-    Topology.POINTS,
-    Topology.LINES,
-    Topology.LINE_LOOP,
-    Topology.LINE_STRIP,
-    Topology.TRIANGLES,
-    Topology.TRIANGLE_STRIP,
-    Topology.TRIANGLE_FAN,
-)
 _TYPES = {2: ("VEC2",), 3: ("VEC3",), 4: ("VEC4",)}
 _UNSIGNED_INT = 5125
 _INDEX_TYPES = (5121, 5123, _UNSIGNED_INT)
@@ -89,7 +79,7 @@ def _read_primitive(
         return Primitive(
             attributes,
             indices,
-            topology=_TOPOLOGIES[primitive.mode],
+            topology=TOPOLOGIES[primitive.mode],
             material=material,
         )
     except ModelError as error:

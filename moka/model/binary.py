@@ -1,0 +1,99 @@
+"""The one buffer of a glTF file that is being written."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pygltflib
+
+__all__ = ["BinaryWriter"]
+
+_FLOAT, _UNSIGNED_SHORT, _UNSIGNED_INT = 5126, 5123, 5125
+_VERTICES, _INDICES = 34962, 34963  # targets of buffer views
+_TYPES = {2: "VEC2", 3: "VEC3", 4: "VEC4"}
+# 65535 would restart a strip of 16-bit indices.
+_SHORT_LIMIT = 65535
+
+
+class BinaryWriter:
+    """Collects bytes, and the buffer views and accessors that name them.
+
+    An array that is written twice is stored once; the arrays must stay
+    alive as long as the writer.
+    """
+
+    def __init__(self, gltf: "pygltflib.GLTF2") -> None:
+        self._gltf = gltf
+        self._data = bytearray()
+        self._accessors: dict[tuple[int, str], int] = {}
+
+    def attribute(self, array: NDArray[np.float32], name: str) -> int:
+        """The accessor of a float32 vertex attribute (N, C)."""
+        key = id(array), name
+        if key not in self._accessors:
+            limits = {}
+            if name == "POSITION":  # the one that must state its bounds
+                limits = {
+                    "min": array.min(axis=0).tolist(),
+                    "max": array.max(axis=0).tolist(),
+                }
+            self._accessors[key] = self._accessor(
+                np.ascontiguousarray(array, "<f4"),
+                _VERTICES,
+                componentType=_FLOAT,
+                type=_TYPES[array.shape[1]],
+                **limits,
+            )
+        return self._accessors[key]
+
+    def indices(self, array: NDArray[np.uint32]) -> int:
+        """The accessor of indices (M,), in 16 bits if they fit."""
+        key = id(array), ""
+        if key not in self._accessors:
+            short = array.max() < _SHORT_LIMIT
+            self._accessors[key] = self._accessor(
+                array.astype("<u2" if short else "<u4"),
+                _INDICES,
+                componentType=_UNSIGNED_SHORT if short else _UNSIGNED_INT,
+                type="SCALAR",
+            )
+        return self._accessors[key]
+
+    def view(self, data: bytes | memoryview, target: int | None = None) -> int:
+        """The buffer view of ``data``, aligned to 4 bytes."""
+        import pygltflib
+
+        self._data += bytes(-len(self._data) % 4)
+        self._gltf.bufferViews.append(
+            pygltflib.BufferView(
+                buffer=0,
+                byteOffset=len(self._data),
+                byteLength=len(data),
+                target=target,
+            )
+        )
+        self._data += data
+        return len(self._gltf.bufferViews) - 1
+
+    def finish(self) -> None:
+        """Give the document its buffer; nothing can be added after it."""
+        import pygltflib
+
+        if not self._data:
+            return
+        self._data += bytes(-len(self._data) % 4)
+        self._gltf.buffers = [pygltflib.Buffer(byteLength=len(self._data))]
+        self._gltf.set_binary_blob(bytes(self._data))
+
+    def _accessor(
+        self, array: NDArray[Any], target: int, **properties: Any
+    ) -> int:
+        import pygltflib
+
+        view = self.view(array.tobytes(), target)
+        self._gltf.accessors.append(
+            pygltflib.Accessor(bufferView=view, count=len(array), **properties)
+        )
+        return len(self._gltf.accessors) - 1

@@ -1,0 +1,74 @@
+"""The pixel size of a PNG or JPEG from its header, without decoding it.
+
+Sources: ISO/IEC 15948 (PNG), section 11.2.1; ITU-T T.81 (JPEG), annex B.
+"""
+
+from collections.abc import Callable
+
+from moka.core.encoded_image import EncodedImage
+from moka.core.errors import ImageFileError
+
+__all__ = ["media_type", "pixel_size"]
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+_JPEG = b"\xff\xd8\xff"
+# Start of frame, all coding processes; C4, C8 and CC are other segments.
+_FRAMES = {*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC}
+
+Read = Callable[[int, int], bytes]
+
+
+def media_type(data: bytes | memoryview) -> str | None:
+    """The media type that glTF gives to encoded ``data``, None if neither."""
+    head = bytes(data[:8])
+    if head == _PNG:
+        return "image/png"
+    return "image/jpeg" if head.startswith(_JPEG) else None
+
+
+def pixel_size(image: EncodedImage) -> tuple[int, int] | None:
+    """Width and height; None if the header is broken or of another format.
+
+    Only headers are read. Raises ImageFileError if the file is gone.
+    """
+    if image.path is None:
+        data = image.read()
+        return _size(lambda start, count: bytes(data[start : start + count]))
+    try:
+        with open(image.path, "rb") as file:
+
+            def read(start: int, count: int) -> bytes:
+                file.seek(start)
+                return file.read(count)
+
+            return _size(read)
+    except OSError as error:
+        raise ImageFileError(
+            f"{image.where}: cannot read {image.path}: {error.strerror}"
+        ) from error
+
+
+def _size(read: Read) -> tuple[int, int] | None:
+    head = read(0, 24)
+    if head.startswith(_PNG):
+        if head[12:16] != b"IHDR" or len(head) < 24:
+            return None
+        return _integer(head[16:20]), _integer(head[20:24])
+    return _jpeg_size(read) if head.startswith(_JPEG) else None
+
+
+def _jpeg_size(read: Read) -> tuple[int, int] | None:
+    """Walk the segments, whose lengths stand after their markers."""
+    start = 2
+    while len(segment := read(start, 9)) == 9 and segment[0] == 0xFF:
+        if segment[1] == 0xFF:  # markers may be padded with FF
+            start += 1
+        elif segment[1] in _FRAMES:
+            return _integer(segment[7:9]), _integer(segment[5:7])
+        else:
+            start += 2 + max(2, _integer(segment[2:4]))
+    return None
+
+
+def _integer(data: bytes) -> int:
+    return int.from_bytes(data, "big")

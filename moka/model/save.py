@@ -1,0 +1,181 @@
+"""Writing a model as .glb or .gltf, through pygltflib."""
+
+import math
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from moka.core.errors import ModelError
+from moka.model.binary import BinaryWriter
+from moka.model.cameras import CameraDescription, Perspective
+from moka.model.lights import LightKind, PunctualLight
+from moka.model.mesh import TOPOLOGIES, Primitive
+from moka.model.model import Model
+from moka.model.save_materials import MaterialWriter
+from moka.version import __version__
+
+if TYPE_CHECKING:
+    import pygltflib
+
+__all__ = ["save_model"]
+
+_MODES = {topology: mode for mode, topology in enumerate(TOPOLOGIES)}
+_LIGHTS = "KHR_lights_punctual"
+
+
+def save_model(model: Model, path: str | os.PathLike[str]) -> None:
+    """Write ``model`` to ``path``: .glb, or .gltf with a .bin beside it.
+
+    Geometry as float32, textures as embedded images, nodes as matrices,
+    cameras, punctual lights and scenes. What moka does not read of a file,
+    such as animations, is not written either. Raises ModelError if the
+    suffix is another, the geometry was released, a texture is neither PNG
+    nor JPEG or the file cannot be written.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in (".glb", ".gltf"):
+        raise ModelError(f"{path}: a model is saved as .glb or .gltf")
+    gltf = _document(model)
+    try:
+        if suffix == ".glb":
+            gltf.save_binary(path)
+        else:
+            gltf.save_json(path)
+    except OSError as error:
+        raise ModelError(
+            f"{path}: cannot be written: {error.strerror}"
+        ) from error
+
+
+def _document(model: Model) -> "pygltflib.GLTF2":
+    import pygltflib
+
+    gltf = pygltflib.GLTF2(
+        asset=pygltflib.Asset(generator=f"moka {__version__}"),
+        scene=model.default_scene,
+        scenes=[
+            pygltflib.Scene(name=name, nodes=list(roots))
+            for name, roots in zip(model.scene_names, model.scenes, strict=True)
+        ],
+        cameras=[_camera(camera) for camera in model.cameras],
+        nodes=_nodes(model),
+    )
+    binary = BinaryWriter(gltf)
+    materials = MaterialWriter(gltf, binary)
+    for material in model.materials:
+        materials.material(material)
+    for mesh in model.meshes:
+        primitives = [
+            _primitive(primitive, binary, materials)
+            for primitive in mesh.primitives
+        ]
+        gltf.meshes.append(
+            pygltflib.Mesh(
+                name=mesh.name,
+                primitives=primitives,
+                weights=list(mesh.weights),
+            )
+        )
+    binary.finish()
+    if model.lights:
+        gltf.extensions[_LIGHTS] = {
+            "lights": [_light(light) for light in model.lights]
+        }
+        materials.extensions.add(_LIGHTS)
+    gltf.extensionsUsed = sorted(materials.extensions)
+    return gltf
+
+
+def _primitive(
+    primitive: Primitive, binary: BinaryWriter, materials: MaterialWriter
+) -> "pygltflib.Primitive":
+    import pygltflib
+
+    if not primitive.attributes:
+        raise ModelError("the geometry was released and cannot be saved")
+    material, indices = primitive.material, primitive.indices
+    return pygltflib.Primitive(
+        attributes=pygltflib.Attributes(
+            **{
+                name: binary.attribute(array, name)
+                for name, array in primitive.attributes.items()
+            }
+        ),
+        indices=None if indices is None else binary.indices(indices),
+        mode=_MODES[primitive.topology],
+        material=None if material is None else materials.material(material),
+    )
+
+
+def _nodes(model: Model) -> list["pygltflib.Node"]:
+    import pygltflib
+
+    tree = model.nodes
+    identity = (tree.local == np.eye(4)).all(axis=(1, 2)).tolist()
+    nodes = [
+        pygltflib.Node(
+            name=name,
+            matrix=None if same else local.T.reshape(-1).tolist(),
+            mesh=None if mesh < 0 else mesh,
+            camera=None if camera < 0 else camera,
+            extensions={} if light < 0 else {_LIGHTS: {"light": light}},
+        )
+        for name, same, local, mesh, camera, light in zip(
+            tree.names,
+            identity,
+            tree.local,
+            tree.mesh.tolist(),
+            tree.camera.tolist(),
+            tree.light.tolist(),
+            strict=True,
+        )
+    ]
+    for row, parent in enumerate(tree.parents.tolist()):
+        if parent >= 0:
+            nodes[parent].children.append(row)
+    return nodes
+
+
+def _camera(camera: CameraDescription) -> "pygltflib.Camera":
+    import pygltflib
+
+    view = camera.projection
+    if isinstance(view, Perspective):
+        return pygltflib.Camera(
+            name=camera.name,
+            type="perspective",
+            perspective=pygltflib.Perspective(
+                yfov=view.yfov,
+                aspectRatio=view.aspect,
+                znear=view.near,
+                zfar=None if math.isinf(view.far) else view.far,
+            ),
+        )
+    return pygltflib.Camera(
+        name=camera.name,
+        type="orthographic",
+        orthographic=pygltflib.Orthographic(
+            xmag=view.xmag, ymag=view.ymag, znear=view.near, zfar=view.far
+        ),
+    )
+
+
+def _light(light: PunctualLight) -> dict[str, Any]:
+    """A plain object, since pygltflib leaves extensions to its user."""
+    written: dict[str, Any] = {
+        "name": light.name,
+        "type": light.kind.value,
+        "color": list(light.colour),
+        "intensity": light.intensity,
+    }
+    if not math.isinf(light.range):
+        written["range"] = light.range
+    if light.kind is LightKind.SPOT:
+        written["spot"] = {
+            "innerConeAngle": light.inner_cone_angle,
+            "outerConeAngle": light.outer_cone_angle,
+        }
+    return written
