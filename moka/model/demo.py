@@ -47,12 +47,12 @@ Item = tuple[Primitive, Material | None, Array]
 
 
 def demo_model() -> Model:
-    """The demo scene, with one camera; 8.4 by 2.5 by 4.8 metres."""
+    """The demo scene, with one camera; 8.4 by 2.5 by 4.2 metres."""
     camera = CameraDescription(
         Perspective(yfov=math.radians(26), near=0.1), "demo"
     )
-    eye = _placed((-4.6, 5.0, 12.6))
-    eye[:3, :3] = look_rotation((4.45, -4.42, -13.6), (0, 1, 0))
+    eye = _placed((-2.9, 4.3, 11.3))
+    eye[:3, :3] = look_rotation((2.8, -3.75, -12.2), (0, 1, 0))
     return model_of(
         [*_steps(), *_spheres()], name="demo", cameras=[(camera, eye)]
     )
@@ -74,7 +74,7 @@ def _sphere_material(row: int, column: int) -> Material:
     share = column / (_COLUMNS - 1)
     if row == 0:
         # Hues that stop short of meeting again, in linear light.
-        red, green, blue = colorsys.hsv_to_rgb(0.02 + 0.72 * share, 0.9, 0.62)
+        red, green, blue = colorsys.hsv_to_rgb(0.72 * share, 0.96, 0.55)
         return Material(
             name=f"dielectric {column}",
             base_colour_factor=(red, green, blue, 1.0),
@@ -94,7 +94,7 @@ def _steps() -> list[Item]:
     material = _tile_material()
     boxes = (
         # lower, upper, back and front edge
-        (-_TILE / 2, 0.0, -2.5 * _SPACING, 1.5 * _SPACING),
+        (-_TILE / 2, 0.0, -2.5 * _SPACING, 1.0 * _SPACING),
         (0.0, _TILE, -2.5 * _SPACING, -0.5 * _SPACING),
         (_TILE, 2 * _TILE, -2.5 * _SPACING, -1.5 * _SPACING),
     )
