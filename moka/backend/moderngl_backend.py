@@ -73,6 +73,9 @@ class ModernGLBackend:
     ) -> None:
         self._context = context
         self._ctx = context.gl
+        # Every object is released here, by its handle; the collector, which
+        # may run on any thread, releases none.
+        self._ctx.gc_mode = None
         self._gl = Functions(context.function)
         self._explain = explain
         self.info = _read_info(context, multi_draw=multi_draw)
@@ -213,7 +216,6 @@ class ModernGLBackend:
                 self._run(step)
         counters.bytes_uploaded += self._uploaded
         self._uploaded = 0
-        self._ctx.gc()
         self._check_errors("frame")
         return counters
 
@@ -245,7 +247,6 @@ class ModernGLBackend:
                 if hasattr(resource, "release"):
                     resource.release()
             self._samplers.release()
-            self._ctx.gc()
         self._resources.clear()
         self._arrays.clear()
         self._context.close()

@@ -1,0 +1,389 @@
+"""Turns an environment into the textures that lighting reads, on the GPU.
+
+Split-sum image-based lighting (Karis 2013): the equirectangular map becomes
+a cube map, its mip levels are prefiltered for the GGX lobe of growing
+roughness, a small cube holds irradiance, and a table the directional albedo
+of the lobe. Each of them is made only when something asks for it. The cost
+is measured by the statistics stage ``environment``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.command_list import CommandList
+from moka.commands.descriptors import (
+    Attachment,
+    BindGroupDescriptor,
+    BufferDescriptor,
+    BufferUsage,
+    FramebufferDescriptor,
+    PixelFormat,
+    SamplerDescriptor,
+    TextureBinding,
+    TextureDescriptor,
+    TextureKind,
+    UniformBinding,
+    Wrap,
+)
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+from moka.graphics.passes import FULLSCREEN, FullscreenPasses
+from moka.graphics.uniform_block import (
+    Parameter,
+    ParameterType,
+    UniformLayout,
+)
+from moka.lighting.samples import (
+    cosine_samples,
+    ggx_prefilter_samples,
+    pack,
+)
+
+if TYPE_CHECKING:
+    from moka.lighting.environment import Environment
+
+__all__ = [
+    "CUBE_SAMPLER",
+    "MAP_SAMPLER",
+    "TABLE_SAMPLER",
+    "EnvironmentMaps",
+    "Preintegrator",
+    "cube_size",
+    "specular_level_count",
+]
+
+# u wraps around, v ends at the poles.
+MAP_SAMPLER = SamplerDescriptor(wrap_t=Wrap.CLAMP_TO_EDGE)
+CUBE_SAMPLER = SamplerDescriptor(Wrap.CLAMP_TO_EDGE, Wrap.CLAMP_TO_EDGE)
+TABLE_SAMPLER = CUBE_SAMPLER
+
+TABLE_SIZE = 64
+TABLE_SAMPLES = 64
+SPECULAR_SAMPLES = 64
+IRRADIANCE_SAMPLES = 128
+IRRADIANCE_SIZE = 16
+# The level of roughness 1 has this many texels along an edge: its lobe is
+# wider than they are.
+SMALLEST_SPECULAR = 8
+LARGEST_CUBE = 1024
+# Float32 holds a sun of any radiance unscaled.
+CUBE_FORMAT = PixelFormat.RGBA32F
+
+_CUBE_FACE = UniformLayout(
+    "CubeFace",
+    (
+        Parameter("face", ParameterType.INT),
+        Parameter("size", ParameterType.INT),
+        Parameter("subdivisions", ParameterType.INT),
+        Parameter("source_lod", ParameterType.FLOAT),
+    ),
+)
+
+
+@dataclass(slots=True)
+class EnvironmentMaps:
+    """What is there of one environment; None where nothing asked for it.
+
+    ``map`` is the equirectangular map, ``specular`` the prefiltered cube,
+    level ``roughness * (specular_levels - 1)`` for a roughness,
+    ``irradiance`` a cube of E / pi.
+    """
+
+    map: Handle | None = None
+    specular: Handle | None = None
+    specular_levels: int = 1
+    irradiance: Handle | None = None
+    resources: list[Handle] = field(default_factory=list)
+
+    def destroy(self, device: GraphicsDevice) -> None:
+        """Destroy all of it."""
+        device.destroy(*self.resources)
+        self.resources.clear()
+
+
+def cube_size(map_height: int) -> int:
+    """Texels along a cube's edge for a map of ``map_height`` rows.
+
+    As many to the right angle as the map has at its equator, rounded up to
+    a power of two.
+    """
+    texels = max(map_height / 2, SMALLEST_SPECULAR)
+    return min(LARGEST_CUBE, 1 << int(np.ceil(np.log2(texels))))
+
+
+def specular_level_count(size: int) -> int:
+    """Levels of a prefiltered cube of ``size``; the last is roughness 1."""
+    return max(1, (size // SMALLEST_SPECULAR).bit_length())
+
+
+class Preintegrator:
+    """Makes environment maps and BRDF tables on one device."""
+
+    def __init__(
+        self, device: GraphicsDevice, passes: FullscreenPasses
+    ) -> None:
+        self._device = device
+        self._passes = passes
+        self._tables: dict[str, Handle] = {}
+
+    def brdf_table(self, brdf: str) -> Handle:
+        """The table of ``gltf``, ``karis`` or ``blinn-phong``, made once.
+
+        x is n.v, y is roughness, red the scale of f0, green that of f90.
+        """
+        if brdf not in self._tables:
+            table = self._device.create_texture(
+                TextureDescriptor(
+                    PixelFormat.RG32F, TABLE_SIZE, TABLE_SIZE, label="table"
+                )
+            )
+            jobs = _Jobs(self._device, self._passes)
+            jobs.draw(
+                "brdf_table.frag",
+                {
+                    f"MOKA_BRDF_{brdf.upper().replace('-', '_')}": 1,
+                    "MOKA_SAMPLE_COUNT": TABLE_SAMPLES,
+                },
+                Attachment(table),
+            )
+            jobs.run()
+            self._tables[brdf] = table
+        return self._tables[brdf]
+
+    def prepare(
+        self,
+        environment: "Environment",
+        *,
+        background: bool,
+        specular: bool,
+        irradiance: bool,
+    ) -> EnvironmentMaps:
+        """Make what is asked for of ``environment``'s base map."""
+        maps = EnvironmentMaps()
+        pixels = environment.pixels
+        is_uniform = pixels.shape[:2] == (1, 1)
+        if background or ((specular or irradiance) and not is_uniform):
+            maps.map = self._upload_map(pixels, maps)
+        if is_uniform:
+            # Every direction is alike: one texel a face says it all.
+            if specular or irradiance:
+                cube = self._uniform_cube(pixels[0, 0], maps)
+                maps.specular = cube if specular else None
+                maps.irradiance = cube if irradiance else None
+            return maps
+        if not (specular or irradiance):
+            return maps
+        assert maps.map is not None
+        size = cube_size(len(pixels))
+        jobs = _Jobs(self._device, self._passes)
+        source = self._make_cube(jobs, maps.map, pixels, size)
+        if specular:
+            maps.specular_levels = specular_level_count(size)
+            maps.specular = self._prefilter(jobs, source, size, maps)
+        if irradiance:
+            maps.irradiance = self._convolve(jobs, source, size, maps)
+        jobs.run()
+        return maps
+
+    def _upload_map(
+        self, pixels: NDArray[np.float32], maps: EnvironmentMaps
+    ) -> Handle:
+        height, width = pixels.shape[:2]
+        texture = self._device.create_texture(
+            TextureDescriptor(
+                PixelFormat.RGB32F, width, height, label="environment map"
+            ),
+            [pixels],
+        )
+        maps.resources.append(texture)
+        return texture
+
+    def _uniform_cube(
+        self, radiance: NDArray[np.float32], maps: EnvironmentMaps
+    ) -> Handle:
+        texel = np.append(radiance, np.float32(1))
+        cube = self._device.create_texture(
+            TextureDescriptor(CUBE_FORMAT, 1, 1, TextureKind.CUBE),
+            [np.tile(texel, (6, 1, 1, 1))],
+        )
+        maps.resources.append(cube)
+        return cube
+
+    def _make_cube(
+        self,
+        jobs: "_Jobs",
+        map_texture: Handle,
+        pixels: NDArray[np.float32],
+        size: int,
+    ) -> Handle:
+        """The environment as a cube map with box-filtered levels."""
+        levels = size.bit_length()
+        cube = jobs.scratch_cube(size, levels)
+        # A cube texel of a large map covers several of its texels.
+        subdivisions = max(2, -(-len(pixels) // (2 * size)))
+        jobs.cube_level(
+            "equirectangular_to_cube.frag",
+            {},
+            cube,
+            0,
+            size,
+            TextureBinding("environment_map", map_texture, MAP_SAMPLER),
+            subdivisions=subdivisions,
+        )
+        for level in range(1, levels):
+            jobs.cube_level(
+                "downsample_cube.frag",
+                {},
+                cube,
+                level,
+                size >> level,
+                TextureBinding("environment_cube", cube, CUBE_SAMPLER),
+                source_lod=level - 1,
+            )
+        return cube
+
+    def _prefilter(
+        self, jobs: "_Jobs", source: Handle, size: int, maps: EnvironmentMaps
+    ) -> Handle:
+        levels = maps.specular_levels
+        cube = self._device.create_texture(
+            TextureDescriptor(CUBE_FORMAT, size, size, TextureKind.CUBE, levels)
+        )
+        maps.resources.append(cube)
+        for level in range(levels):
+            roughness = level / max(1, levels - 1)
+            jobs.cube_level(
+                "prefilter_specular.frag",
+                {"MOKA_SAMPLE_COUNT": SPECULAR_SAMPLES},
+                cube,
+                level,
+                size >> level,
+                TextureBinding("environment_cube", source, CUBE_SAMPLER),
+                samples=pack(
+                    ggx_prefilter_samples(roughness, SPECULAR_SAMPLES, size),
+                    SPECULAR_SAMPLES,
+                ),
+            )
+        return cube
+
+    def _convolve(
+        self, jobs: "_Jobs", source: Handle, size: int, maps: EnvironmentMaps
+    ) -> Handle:
+        cube = self._device.create_texture(
+            TextureDescriptor(
+                CUBE_FORMAT, IRRADIANCE_SIZE, IRRADIANCE_SIZE, TextureKind.CUBE
+            )
+        )
+        maps.resources.append(cube)
+        jobs.cube_level(
+            "prefilter_irradiance.frag",
+            {"MOKA_SAMPLE_COUNT": IRRADIANCE_SAMPLES},
+            cube,
+            0,
+            IRRADIANCE_SIZE,
+            TextureBinding("environment_cube", source, CUBE_SAMPLER),
+            samples=pack(
+                cosine_samples(IRRADIANCE_SAMPLES, size), IRRADIANCE_SAMPLES
+            ),
+        )
+        return cube
+
+
+class _Jobs:
+    """Full-screen passes in one command list, and what they need meanwhile."""
+
+    def __init__(
+        self, device: GraphicsDevice, passes: FullscreenPasses
+    ) -> None:
+        self._device = device
+        self._passes = passes
+        self._commands = CommandList()
+        self._scratch: list[Handle] = []
+
+    def scratch_cube(self, size: int, levels: int) -> Handle:
+        """A cube map that lives until :meth:`run`."""
+        cube = self._device.create_texture(
+            TextureDescriptor(CUBE_FORMAT, size, size, TextureKind.CUBE, levels)
+        )
+        self._scratch.append(cube)
+        return cube
+
+    def cube_level(
+        self,
+        fragment: str,
+        defines: dict[str, str | int],
+        cube: Handle,
+        level: int,
+        size: int,
+        source: TextureBinding,
+        *,
+        subdivisions: int = 1,
+        source_lod: float = 0.0,
+        samples: bytes = b"",
+    ) -> None:
+        """Run a pass over the six faces of one level of ``cube``."""
+        uniforms = (
+            (UniformBinding("PrefilterSamples", self._buffer(samples)),)
+            if samples
+            else ()
+        )
+        for face in range(6):
+            block = _CUBE_FACE.pack(
+                {
+                    "face": face,
+                    "size": size,
+                    "subdivisions": subdivisions,
+                    "source_lod": source_lod,
+                }
+            )
+            faces = UniformBinding("CubeFace", self._buffer(block.tobytes()))
+            self.draw(
+                fragment,
+                defines,
+                Attachment(cube, level, face),
+                BindGroupDescriptor((source,), (*uniforms, faces)),
+            )
+
+    def draw(
+        self,
+        fragment: str,
+        defines: dict[str, str | int],
+        target: Attachment,
+        bindings: BindGroupDescriptor | None = None,
+    ) -> None:
+        """Record one pass into ``target``."""
+        framebuffer = self._keep(
+            self._device.create_framebuffer, FramebufferDescriptor((target,))
+        )
+        group = self._keep(
+            self._device.create_bind_group, bindings or BindGroupDescriptor()
+        )
+        buffer = self._commands.command_buffer()
+        buffer.bind_framebuffer(framebuffer)
+        buffer.draw(
+            self._passes.program(fragment, defines),
+            self._passes.triangle,
+            group,
+            FULLSCREEN,
+        )
+
+    def run(self) -> None:
+        """Submit the passes and let go of what only they needed."""
+        self._device.submit(self._commands, sort=False)
+        # Users of a resource go before it.
+        self._device.destroy(*reversed(self._scratch))
+
+    def _buffer(self, data: bytes) -> Handle:
+        return self._keep(
+            lambda descriptor: self._device.create_buffer(descriptor, data),
+            BufferDescriptor(BufferUsage.UNIFORM, len(data)),
+        )
+
+    def _keep(self, create: Callable[[Any], Handle], descriptor: Any) -> Handle:
+        handle = create(descriptor)
+        self._scratch.append(handle)
+        return handle

@@ -1,0 +1,40 @@
+// One row of the instance array, as vertex attributes with divisor 1.
+
+in vec4 instance_row_0;   // upper three rows of the affine matrix from
+in vec4 instance_row_1;   // object space to world space, whose origin is
+in vec4 instance_row_2;   // moved to the camera
+in uvec4 instance_data;   // x row of the material, y object number
+
+vec3 place_point(vec3 point) {
+    vec4 p = vec4(point, 1.0);
+    return vec3(
+        dot(instance_row_0, p), dot(instance_row_1, p), dot(instance_row_2, p));
+}
+
+vec3 place_direction(vec3 direction) {
+    return vec3(
+        dot(instance_row_0.xyz, direction),
+        dot(instance_row_1.xyz, direction),
+        dot(instance_row_2.xyz, direction));
+}
+
+// Normals go by the inverse transpose, up to a positive factor: the matrix
+// of cofactors, whose rows are the cross products of the matrix's rows,
+// times the sign of the determinant. It needs no division, so a flattened
+// object keeps its normals.
+vec3 place_normal(vec3 normal, float handedness) {
+    vec3 x = instance_row_0.xyz;
+    vec3 y = instance_row_1.xyz;
+    vec3 z = instance_row_2.xyz;
+    return handedness * vec3(
+        dot(cross(y, z), normal),
+        dot(cross(z, x), normal),
+        dot(cross(x, y), normal));
+}
+
+// -1 where the transform mirrors.
+float instance_handedness() {
+    float determinant =
+        dot(instance_row_0.xyz, cross(instance_row_1.xyz, instance_row_2.xyz));
+    return determinant < 0.0 ? -1.0 : 1.0;
+}

@@ -1,0 +1,124 @@
+// Light that a surface sends towards the viewer. Blocks Frame and Lights are
+// injected.
+
+#include "include/brdf.glsl"
+#include "include/diffuse.glsl"
+#include "include/environment.glsl"
+#include "include/multiscatter.glsl"
+
+// What the terms need to know of a point: glTF 2.0, appendix B.2.
+struct Surface {
+    vec3 diffuse_colour;
+    vec3 f0;
+    vec3 f90;
+    float roughness;
+    float occlusion;
+    vec3 normal;
+    vec3 view;   // towards the viewer
+    vec2 table;  // of the BRDF table for this view and roughness
+};
+
+#ifdef MOKA_BRDF_TABLE
+uniform sampler2D brdf_table;
+#endif
+
+Surface make_surface(
+    vec3 base_colour, float metalness, float roughness, float occlusion,
+    vec3 normal, vec3 view
+) {
+    Surface surface;
+    surface.diffuse_colour = base_colour * (1.0 - metalness);
+    surface.f0 = mix(vec3(0.04), base_colour, metalness);
+    surface.f90 = vec3(1.0);
+    surface.roughness = roughness;
+    surface.occlusion = occlusion;
+    surface.normal = normal;
+    surface.view = view;
+#ifdef MOKA_BRDF_TABLE
+    vec2 place = vec2(clamp_n_dot_v(dot(normal, view)), roughness);
+    surface.table = textureLod(brdf_table, place, 0.0).rg;
+#else
+    surface.table = vec2(1.0, 0.0);
+#endif
+    return surface;
+}
+
+#ifdef MOKA_ENVIRONMENT
+
+uniform samplerCube specular_cube;
+#ifdef MOKA_IRRADIANCE
+uniform samplerCube irradiance_cube;
+#endif
+
+// Split sum (Karis 2013): prefiltered radiance times the directional albedo
+// of the lobe; the diffuse base gets what the interface lets through.
+vec3 environment_light(Surface surface) {
+    vec3 specular =
+        specular_albedo(surface.f0, surface.f90, surface.table)
+        * multiscatter_scale(surface.f0, surface.table);
+    vec3 r = reflect(-surface.view, surface.normal);
+    vec3 light = specular * textureLod(
+        specular_cube,
+        turn_into_environment(r, environment_turn),
+        surface.roughness * specular_levels).rgb;
+#ifdef MOKA_IRRADIANCE
+    float n_dot_v = clamp_n_dot_v(dot(surface.normal, surface.view));
+    vec3 diffuse = diffuse_share(specular)
+        * diffuse_albedo(n_dot_v, surface.diffuse_colour, surface.roughness);
+    light += diffuse * textureLod(
+        irradiance_cube,
+        turn_into_environment(surface.normal, environment_turn),
+        0.0).rgb;
+#endif
+    return light * (surface.occlusion * environment_intensity);
+}
+
+#endif
+
+#ifdef MOKA_PUNCTUAL_LIGHTS
+
+// KHR_lights_punctual: the window that takes a light to nothing at its
+// range, times the inverse square. one_over_range is 0 without a range.
+float distance_attenuation(float squared_distance, float one_over_range) {
+    float ratio = squared_distance * one_over_range * one_over_range;
+    float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
+    // A point light on the surface itself would be infinite; the nearest a
+    // light can be is a tenth of a millimetre.
+    return window / max(squared_distance, 1e-8);
+}
+
+vec3 punctual_light(Surface surface) {
+    vec3 scale = multiscatter_scale(surface.f0, surface.table);
+    float alpha = alpha_from_roughness(surface.roughness);
+    float k = schlick_k_direct(surface.roughness);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < light_count; ++i) {
+        vec3 towards = light_position[i].xyz - surface_position;
+        float attenuation = 1.0;
+        if (light_position[i].w == 0.0) {
+            towards = -light_direction[i].xyz;
+        } else {
+            float squared = dot(towards, towards);
+            attenuation =
+                distance_attenuation(squared, light_direction[i].w);
+            towards *= inversesqrt(max(squared, 1e-30));
+            float cone = dot(-towards, light_direction[i].xyz);
+            float spot = clamp(
+                cone * light_cone[i].x + light_cone[i].y, 0.0, 1.0);
+            attenuation *= spot * spot;
+        }
+        Angles angles =
+            angles_between(surface.normal, surface.view, towards);
+        if (angles.n_dot_l <= 0.0 || attenuation <= 0.0) continue;
+        vec3 fresnel =
+            fresnel_schlick(angles.v_dot_h, surface.f0, surface.f90);
+        vec3 reflected = fresnel * scale * specular_lobe(angles, alpha, k)
+            + (1.0 - fresnel) * diffuse_brdf(
+                angles, surface.diffuse_colour, surface.roughness);
+        sum += reflected * light_intensity[i].rgb
+            * (angles.n_dot_l * attenuation);
+    }
+    return sum;
+}
+
+#endif

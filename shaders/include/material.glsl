@@ -1,0 +1,95 @@
+// What a material says at one point: its row's factors times its textures
+// (glTF 2.0, 3.9). The block Materials is injected.
+
+flat in uint surface_material;
+#ifdef MOKA_UV_0
+in vec2 surface_uv_0;
+#endif
+#ifdef MOKA_UV_1
+in vec2 surface_uv_1;
+#endif
+#ifdef MOKA_VERTEX_COLOUR
+in vec4 surface_colour;
+#endif
+
+// SURFACE_UV(slot, SLOT) is the texture coordinate of a slot: its set, moved
+// by its KHR_texture_transform if it has one.
+#define UV_OF_SET(set) UV_OF_SET_(set)
+#define UV_OF_SET_(set) surface_uv_##set
+
+vec2 transformed(vec2 uv, vec4 rows[2]) {
+    return vec2(
+        dot(rows[0].xyz, vec3(uv, 1.0)), dot(rows[1].xyz, vec3(uv, 1.0)));
+}
+
+#ifdef MOKA_BASE_COLOUR_TEXTURE
+uniform sampler2D base_colour_texture;
+#endif
+#ifdef MOKA_METALLIC_ROUGHNESS_TEXTURE
+uniform sampler2D metallic_roughness_texture;
+#endif
+#ifdef MOKA_NORMAL_TEXTURE
+uniform sampler2D normal_texture;
+#endif
+#ifdef MOKA_OCCLUSION_TEXTURE
+uniform sampler2D occlusion_texture;
+#endif
+#ifdef MOKA_EMISSIVE_TEXTURE
+uniform sampler2D emissive_texture;
+#endif
+
+MaterialsRow material_row() {
+    return materials[surface_material];
+}
+
+vec4 base_colour(MaterialsRow row) {
+    vec4 colour = row.base_colour_factor;
+#ifdef MOKA_VERTEX_COLOUR
+    colour *= surface_colour;
+#endif
+#ifdef MOKA_BASE_COLOUR_TEXTURE
+    vec2 uv = UV_OF_SET(MOKA_BASE_COLOUR_UV);
+#ifdef MOKA_BASE_COLOUR_TRANSFORM
+    uv = transformed(uv, row.base_colour_transform);
+#endif
+    colour *= texture(base_colour_texture, uv);
+#endif
+    return colour;
+}
+
+// x occlusion, y roughness, z metalness: the channels of glTF's packing.
+vec3 occlusion_roughness_metalness(MaterialsRow row) {
+    vec3 packed_values = vec3(1.0, row.roughness_factor, row.metallic_factor);
+#ifdef MOKA_METALLIC_ROUGHNESS_TEXTURE
+    vec2 uv = UV_OF_SET(MOKA_METALLIC_ROUGHNESS_UV);
+#ifdef MOKA_METALLIC_ROUGHNESS_TRANSFORM
+    uv = transformed(uv, row.metallic_roughness_transform);
+#endif
+    vec3 texel = texture(metallic_roughness_texture, uv).rgb;
+    packed_values.yz *= texel.gb;
+#ifdef MOKA_PACKED_OCCLUSION
+    packed_values.x = 1.0 + row.occlusion_strength * (texel.r - 1.0);
+#endif
+#endif
+#ifdef MOKA_OCCLUSION_TEXTURE
+    vec2 occlusion_uv = UV_OF_SET(MOKA_OCCLUSION_UV);
+#ifdef MOKA_OCCLUSION_TRANSFORM
+    occlusion_uv = transformed(occlusion_uv, row.occlusion_transform);
+#endif
+    float occlusion = texture(occlusion_texture, occlusion_uv).r;
+    packed_values.x = 1.0 + row.occlusion_strength * (occlusion - 1.0);
+#endif
+    return clamp(packed_values, 0.0, 1.0);
+}
+
+vec3 emission(MaterialsRow row) {
+    vec3 radiance = row.emissive_factor;
+#ifdef MOKA_EMISSIVE_TEXTURE
+    vec2 uv = UV_OF_SET(MOKA_EMISSIVE_UV);
+#ifdef MOKA_EMISSIVE_TRANSFORM
+    uv = transformed(uv, row.emissive_transform);
+#endif
+    radiance *= texture(emissive_texture, uv).rgb;
+#endif
+    return radiance;
+}

@@ -1,0 +1,84 @@
+// The normal that light meets: interpolated or flat, then normal mapped.
+
+in vec3 surface_position;
+#ifdef MOKA_VERTEX_NORMAL
+in vec3 surface_normal;
+#endif
+#ifdef MOKA_VERTEX_TANGENT
+in vec4 surface_tangent;
+#endif
+
+// The plane of the triangle itself, towards the viewer: for right-handed
+// window coordinates this is the order of the product.
+vec3 facing_normal() {
+    vec3 n = cross(dFdx(surface_position), dFdy(surface_position));
+    float squared = dot(n, n);
+    // A triangle seen exactly edge on, or a point, has no plane.
+    return squared > 0.0 ? n * inversesqrt(squared)
+                         : normalize(-surface_position + 1e-20);
+}
+
+// The geometric normal on the front side of the surface.
+vec3 front_normal() {
+#ifdef MOKA_VERTEX_NORMAL
+    float squared = dot(surface_normal, surface_normal);
+    if (squared > 0.0) return surface_normal * inversesqrt(squared);
+#endif
+    return gl_FrontFacing ? facing_normal() : -facing_normal();
+}
+
+#ifdef MOKA_NORMAL_TEXTURE
+
+// A tangent frame from screen-space derivatives of position and texture
+// coordinate: Schueler 2013, "Normal Mapping without Precomputed Tangents".
+// glTF's y points up in the image and v down, hence the minus. Mirrored
+// coordinates come out right by themselves.
+mat3 cotangent_frame(vec3 n, vec2 uv) {
+    vec3 dp1 = dFdx(surface_position);
+    vec3 dp2 = dFdy(surface_position);
+    vec2 duv1 = dFdx(uv);
+    vec2 duv2 = dFdy(uv);
+    // The construction wants n on the side that is seen.
+    float side = gl_FrontFacing ? 1.0 : -1.0;
+    vec3 dp2_perpendicular = cross(dp2, side * n);
+    vec3 dp1_perpendicular = cross(side * n, dp1);
+    vec3 t = dp2_perpendicular * duv1.x + dp1_perpendicular * duv2.x;
+    vec3 b = -(dp2_perpendicular * duv1.y + dp1_perpendicular * duv2.y);
+    float squared = max(dot(t, t), dot(b, b));
+    // Degenerate coordinates: no direction to bend the normal in.
+    float scale = squared > 0.0 ? inversesqrt(squared) : 0.0;
+    return mat3(t * scale, b * scale, n);
+}
+
+vec3 mapped_normal(vec3 n, MaterialsRow row) {
+    vec2 uv = UV_OF_SET(MOKA_NORMAL_UV);
+#ifdef MOKA_NORMAL_TRANSFORM
+    uv = transformed(uv, row.normal_transform);
+#endif
+    vec3 texel = texture(normal_texture, uv).xyz * 2.0 - 1.0;
+    texel.xy *= row.normal_scale;
+#ifdef MOKA_VERTEX_TANGENT
+    // As MikkTSpace bakes it: the frame is interpolated, not made
+    // orthogonal again.
+    vec3 t = surface_tangent.xyz;
+    vec3 b = cross(n, t) * surface_tangent.w;
+    vec3 mapped = mat3(t, b, n) * texel;
+#else
+    vec3 mapped = cotangent_frame(n, uv) * texel;
+#endif
+    float squared = dot(mapped, mapped);
+    return squared > 0.0 ? mapped * inversesqrt(squared) : n;
+}
+
+#endif
+
+// Unit length; on the side of the surface that is seen.
+vec3 shading_normal(MaterialsRow row) {
+    vec3 n = front_normal();
+#ifdef MOKA_NORMAL_TEXTURE
+    n = mapped_normal(n, row);
+#endif
+    // glTF 2.0, 3.9.7: back faces of a double-sided material are lit with
+    // the normal reversed. Others are culled and never get here.
+    return gl_FrontFacing ? n : -n;
+}

@@ -1,0 +1,44 @@
+// The surface of a model: glTF 2.0's metallic-roughness material.
+//
+// A permutation has only what its material uses; moka.material.description
+// makes the defines. Radiance leaves premultiplied by coverage.
+
+#include "include/material.glsl"
+#include "include/shading_normal.glsl"
+#include "include/lighting.glsl"
+
+out vec4 radiance;
+
+void main() {
+    MaterialsRow row = material_row();
+    vec4 base = base_colour(row);
+    float coverage = 1.0;
+#if defined(MOKA_ALPHA_MASK)
+    if (base.a < row.alpha_cutoff) discard;
+#elif defined(MOKA_ALPHA_BLEND)
+    coverage = clamp(base.a, 0.0, 1.0);
+#endif
+#ifdef MOKA_UNLIT
+    vec3 light = base.rgb;
+#else
+    vec3 packed_values = occlusion_roughness_metalness(row);
+    vec3 view = normalize(eye.xyz - surface_position * eye.w);
+    Surface surface = make_surface(
+        base.rgb, packed_values.z, packed_values.y, packed_values.x,
+        shading_normal(row), view);
+    vec3 light = vec3(0.0);
+#ifdef MOKA_ENVIRONMENT
+    light += environment_light(surface);
+#endif
+#ifdef MOKA_PUNCTUAL_LIGHTS
+    light += punctual_light(surface);
+#endif
+#ifdef MOKA_EMISSIVE
+    light += emission(row);
+#endif
+#endif
+#ifndef MOKA_FLOAT_TARGET
+    light = min(light, HALF_MAXIMUM);
+#endif
+    radiance = vec4(light * coverage, coverage);
+}

@@ -1,0 +1,61 @@
+// Vertices of a model's surface. The block Frame is injected.
+
+#include "include/instance.glsl"
+
+in vec3 position;
+out vec3 surface_position;  // world space, relative to the camera
+flat out uint surface_material;
+
+#ifdef MOKA_VERTEX_NORMAL
+in vec3 normal;
+out vec3 surface_normal;
+#endif
+#ifdef MOKA_VERTEX_TANGENT
+in vec4 tangent;
+out vec4 surface_tangent;
+#endif
+#ifdef MOKA_UV_0
+in vec2 uv_0;
+out vec2 surface_uv_0;
+#endif
+#ifdef MOKA_UV_1
+in vec2 uv_1;
+out vec2 surface_uv_1;
+#endif
+#ifdef MOKA_VERTEX_COLOUR
+in vec4 colour_0;
+out vec4 surface_colour;
+#endif
+
+void main() {
+    surface_position = place_point(position);
+    surface_material = instance_data.x;
+#ifdef MOKA_VERTEX_NORMAL
+    float handedness = instance_handedness();
+    // Normalised here, so that a scaled object interpolates as it would
+    // unscaled. A zero normal stays zero; the fragment shader replaces it.
+    vec3 placed = place_normal(normal, handedness);
+    float squared = dot(placed, placed);
+    surface_normal = squared > 0.0 ? placed * inversesqrt(squared) : placed;
+#endif
+#ifdef MOKA_VERTEX_TANGENT
+    vec3 along = place_direction(tangent.xyz);
+    squared = dot(along, along);
+    surface_tangent = vec4(
+        squared > 0.0 ? along * inversesqrt(squared) : along,
+        tangent.w * handedness);
+#endif
+#ifdef MOKA_UV_0
+    surface_uv_0 = uv_0;
+#endif
+#ifdef MOKA_UV_1
+    surface_uv_1 = uv_1;
+#endif
+#ifdef MOKA_VERTEX_COLOUR
+    surface_colour = colour_0;
+#endif
+    gl_Position = clip_from_world * vec4(surface_position, 1.0);
+#ifdef MOKA_POINTS
+    gl_PointSize = point_size;
+#endif
+}
