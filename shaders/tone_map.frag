@@ -1,0 +1,27 @@
+// Radiance to display values: exposure, tone map, encoding.
+//
+// Encodes as sRGB, or with a plain power where MOKA_ENCODE_GAMMA is defined.
+// Alpha comes premultiplied and leaves straight, as PNG stores it.
+
+#include "include/srgb.glsl"
+#include "include/tone_map.glsl"
+
+layout(std140) uniform ToneMap {
+    vec4 parameters;  // x factor of exposure (2^EV), y 1 / gamma
+};
+
+uniform sampler2D radiance_map;  // read texel by texel at gl_FragCoord
+
+out vec4 colour;
+
+void main() {
+    vec4 texel = texelFetch(radiance_map, ivec2(gl_FragCoord.xy), 0);
+    float alpha = clamp(texel.a, 0.0, 1.0);
+    vec3 straight = alpha > 0.0 ? texel.rgb / alpha : vec3(0.0);
+    vec3 display = tone_map(parameters.x * straight);
+#ifdef MOKA_ENCODE_GAMMA
+    colour = vec4(pow(max(display, 0.0), vec3(parameters.y)), alpha);
+#else
+    colour = vec4(srgb_encode(display), alpha);
+#endif
+}
