@@ -1,0 +1,75 @@
+"""Every full-screen pass and every include compiles as GLSL 330 core."""
+
+from itertools import product
+
+import pytest
+
+from moka.core.resources import shader_folder
+from moka.graphics.shader_source import load_shader, preprocess_shader
+from tests.support.gpu import gpu
+
+pytestmark = pytest.mark.gpu
+
+BRDFS = ("MOKA_BRDF_GLTF", "MOKA_BRDF_KARIS", "MOKA_BRDF_BLINN_PHONG")
+DIFFUSES = (
+    "MOKA_DIFFUSE_LAMBERT",
+    "MOKA_DIFFUSE_OREN_NAYAR",
+    "MOKA_DIFFUSE_BURLEY",
+    "MOKA_DIFFUSE_BURLEY_ORIGINAL",
+)
+TONE_MAPS = (
+    "MOKA_TONE_MAP_NEUTRAL",
+    "MOKA_TONE_MAP_ACES",
+    "MOKA_TONE_MAP_AGX",
+    "MOKA_TONE_MAP_REINHARD",
+    "MOKA_TONE_MAP_EXPONENTIAL",
+    "MOKA_TONE_MAP_NONE",
+)
+PASSES = [
+    ("equirectangular_to_cube.frag", ()),
+    ("downsample_cube.frag", ()),
+    ("background.frag", ()),
+    ("prefilter_specular.frag", ("MOKA_SAMPLE_COUNT",)),
+    ("prefilter_irradiance.frag", ("MOKA_SAMPLE_COUNT",)),
+    *(("brdf_table.frag", ("MOKA_SAMPLE_COUNT", brdf)) for brdf in BRDFS),
+    *(
+        ("tone_map.frag", (tone_map, *gamma))
+        for tone_map in TONE_MAPS
+        for gamma in ((), ("MOKA_ENCODE_GAMMA",))
+    ),
+]
+# Files that need the defines and the injected text of a material; they are
+# compiled with it.
+PARTS_OF_SURFACE = {
+    "frame.glsl",
+    "instance.glsl",
+    "lighting.glsl",
+    "material.glsl",
+    "shading_normal.glsl",
+}
+INCLUDES = sorted(
+    {path.name for path in (shader_folder() / "include").glob("*.glsl")}
+    - PARTS_OF_SURFACE
+)
+
+
+@pytest.mark.parametrize(("name", "defines"), PASSES)
+def test_a_pass_compiles_in_all_its_permutations(name, defines):
+    fragment = load_shader(name, dict.fromkeys(defines, 16))
+    gpu().compile(load_shader("fullscreen.vert"), fragment)
+
+
+@pytest.mark.parametrize("name", INCLUDES)
+def test_an_include_compiles_by_itself_and_has_no_main(name):
+    text = preprocess_shader(f'#include "include/{name}"\nvoid main() {{}}')
+    gpu().compile(load_shader("fullscreen.vert"), text)
+
+
+@pytest.mark.parametrize(("brdf", "diffuse"), [*product(BRDFS, DIFFUSES)])
+def test_reflection_compiles_in_all_its_permutations(brdf, diffuse):
+    text = preprocess_shader(
+        '#include "include/brdf.glsl"\n#include "include/diffuse.glsl"\n'
+        '#include "include/multiscatter.glsl"\nvoid main() {}',
+        {brdf: 1, diffuse: 1, "MOKA_MULTISCATTER": 1},
+    )
+    gpu().compile(load_shader("fullscreen.vert"), text)
