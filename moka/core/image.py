@@ -1,0 +1,144 @@
+"""A rendered picture: linear radiance, and how a display shows it."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.colour import encode_srgb8
+from moka.core.errors import ImageFileError, OptionError
+from moka.core.exr import write_exr
+from moka.core.png import encode_png, write_png
+from moka.core.tone_map import tone_map as map_tones
+
+__all__ = ["Image"]
+
+#: Rows tone mapped at a time, so that temporaries stay in the cache.
+_ROWS = 16
+
+
+class Image:
+    """A picture as it leaves the renderer.
+
+    ``pixels`` are float32 (H, W, 4), top row first: linear Rec.709 radiance
+    multiplied by alpha (associated), then alpha. ``tone_map`` and
+    ``exposure`` (in EV) are how it is shown unless asked otherwise.
+    ``display`` is the picture as uint8 (H, W, 4) that the GPU already made
+    with just these two, sRGB-encoded and with alpha not associated.
+    ``layers`` are further values that an EXR file takes along, by names as
+    :mod:`moka.core.exr` describes them.
+    """
+
+    def __init__(
+        self,
+        pixels: NDArray[np.float32],
+        *,
+        tone_map: str = "neutral",
+        exposure: float = 0.0,
+        display: NDArray[np.uint8] | None = None,
+        layers: Mapping[str, NDArray[Any]] | None = None,
+    ) -> None:
+        if pixels.ndim != 3 or pixels.shape[2] != 4:
+            raise ValueError(f"not RGBA pixels: shape {pixels.shape}")
+        if display is not None and display.shape != pixels.shape:
+            raise ValueError("pixels and display are of different sizes")
+        self.pixels = pixels
+        self.tone_map = tone_map
+        self.exposure = exposure
+        self.layers = dict(layers or {})
+        self._display = display
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"Image({width} x {height})"
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        height, width, _ = self.pixels.shape
+        return width, height
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        tone_map: str | None = None,
+        exposure: float | None = None,
+        gamma: float | None = None,
+        half: bool = False,
+    ) -> None:
+        """Write a .png or .exr file, whole or not at all.
+
+        A .png is what :meth:`to_display` gives. An .exr holds the linear
+        pixels and the layers, as half floats if ``half``; only an exposure
+        that is given here scales it. Raises ImageFileError for another
+        suffix and when the file cannot be written.
+        """
+        suffix = Path(path).suffix.lower()
+        if suffix == ".png":
+            write_png(path, self.to_display(tone_map, exposure, gamma))
+        elif suffix == ".exr":
+            pixels = self.pixels
+            if exposure:
+                gain = 2.0**exposure
+                pixels = pixels * np.array([gain, gain, gain, 1], np.float32)
+            write_exr(path, pixels, half=half, layers=self.layers)
+        else:
+            raise ImageFileError(
+                f"{os.fspath(path)}: cannot write images of this kind; "
+                "use .png or .exr"
+            )
+
+    def to_display(
+        self,
+        tone_map: str | None = None,
+        exposure: float | None = None,
+        gamma: float | None = None,
+    ) -> NDArray[np.uint8]:
+        """The picture for a display: uint8 (H, W, 4), top row first.
+
+        Exposed, tone mapped, sRGB-encoded; alpha is linear and no longer
+        associated with the colour. What is None is as the picture was
+        rendered. ``gamma`` puts the power 1 / gamma in the place of the
+        sRGB curve. Raises OptionError for an unknown tone map and for a
+        gamma that is not positive.
+        """
+        name = self.tone_map if tone_map is None else tone_map
+        stops = self.exposure if exposure is None else exposure
+        as_rendered = (name, stops) == (self.tone_map, self.exposure)
+        if self._display is not None and as_rendered and gamma is None:
+            return self._display
+        if gamma is not None and not gamma > 0.0:
+            raise OptionError(f"a gamma of {gamma} is not positive")
+
+        shown = np.empty(self.pixels.shape, np.uint8)
+        for start in range(0, len(shown), _ROWS):
+            rows = self.pixels[start : start + _ROWS]
+            colour, alpha = rows[:, :, :3], rows[:, :, 3:]
+            if alpha.min() < 1.0:
+                # Where nothing covers a pixel, its colour means nothing.
+                colour = np.where(alpha > 0.0, colour / _or_one(alpha), 0.0)
+            mapped = map_tones(colour, name, stops)
+            block = shown[start : start + _ROWS]
+            if gamma is None:
+                block[:, :, :3] = encode_srgb8(mapped)
+            else:
+                block[:, :, :3] = _to_codes(mapped ** (1.0 / gamma))
+            block[:, :, 3:] = _to_codes(alpha)
+        return shown
+
+    def _repr_png_(self) -> bytes:
+        return encode_png(self.to_display())
+
+
+def _or_one(alpha: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.where(alpha > 0.0, alpha, np.float32(1))
+
+
+def _to_codes(values: NDArray[np.floating[Any]]) -> NDArray[np.uint8]:
+    codes: NDArray[np.uint8] = np.empty(values.shape, np.uint8)
+    np.rint(255.0 * np.clip(values, 0.0, 1.0), out=codes, casting="unsafe")
+    return codes
