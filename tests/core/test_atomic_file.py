@@ -22,11 +22,14 @@ def test_file_appears_at_the_end(tmp_path: Path) -> None:
 def test_error_leaves_the_old_file(tmp_path: Path) -> None:
     target = tmp_path / "a.txt"
     target.write_text("old")
-    writing = atomic_file(target)
-    writing.__enter__().write_text("half of the n")
-    interrupt = KeyboardInterrupt()
+
+    def interrupted() -> None:
+        with atomic_file(target) as temporary:
+            temporary.write_text("half of the n")
+            raise KeyboardInterrupt
+
     with pytest.raises(KeyboardInterrupt):
-        writing.__exit__(type(interrupt), interrupt, None)
+        interrupted()
     assert target.read_text() == "old"
     assert os.listdir(tmp_path) == ["a.txt"]
 
