@@ -31,7 +31,9 @@ Angles angles_between(vec3 n, vec3 v, vec3 l) {
     Angles angles;
     angles.n_dot_v = clamp_n_dot_v(dot(n, v));
     angles.n_dot_l = clamp(dot(n, l), 0.0, 1.0);
-    angles.n_dot_h = clamp(dot(n, h), 0.0, 1.0);
+    // Negative only for a view from below the surface; 0 in its place could
+    // meet a sine of 0, which no direction has.
+    angles.n_dot_h = min(abs(dot(n, h)), 1.0);
     angles.v_dot_h = clamp(dot(v, h), 0.0, 1.0);
     angles.n_cross_h_squared =
         opposite ? 1.0 : min(dot(n_cross_h, n_cross_h), 1.0);

@@ -20,12 +20,13 @@
 const float FUJII_A = 0.287793409210806;  // 1/2 - 2/(3 pi)
 const float FUJII_AVERAGE = 0.0724882124569231;  // 2/3 - 28/(15 pi)
 
-// EON, listing 2: the albedo of Fujii's single-scattering lobe, fitted.
+// EON, listing 2: the albedo of Fujii's single-scattering lobe, fitted; the
+// fit exceeds 1, the exact value at grazing angles, by 4e-4.
 float fujii_albedo(float cosine, float roughness) {
     float x = 1.0 - cosine;
     float g = x * (0.0571085289 + x * (0.491881867
         + x * (-0.332181442 + x * 0.0714429953)));
-    return (1.0 + roughness * g) / (1.0 + FUJII_A * roughness);
+    return min((1.0 + roughness * g) / (1.0 + FUJII_A * roughness), 1.0);
 }
 
 // EON, equation 15: the colour of light that was reflected more than once.
@@ -39,7 +40,8 @@ float fujii_average_albedo(float roughness) {
 
 vec3 diffuse_brdf(Angles angles, vec3 colour, float roughness) {
     float v_dot_l = 2.0 * angles.v_dot_h * angles.v_dot_h - 1.0;
-    float s = v_dot_l - angles.n_dot_l * angles.n_dot_v;
+    // Below -1 only where n.v was raised for a view from behind.
+    float s = max(v_dot_l - angles.n_dot_l * angles.n_dot_v, -1.0);
     float s_over_t = s > 0.0 ? s / max(angles.n_dot_l, angles.n_dot_v) : s;
     float single =
         (1.0 + roughness * s_over_t) / (1.0 + FUJII_A * roughness);
