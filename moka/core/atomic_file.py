@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["atomic_file"]
+from moka.core.errors import ImageFileError
+
+__all__ = ["atomic_file", "image_file"]
 
 
 @contextmanager
@@ -33,3 +35,16 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[Path]:
         os.replace(temporary, target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def image_file(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """:func:`atomic_file` for images: OSErrors become ImageFileErrors."""
+    try:
+        with atomic_file(path) as temporary:
+            yield temporary
+    except OSError as error:
+        raise ImageFileError(
+            f"{os.fspath(path)}: cannot write the image: "
+            f"{error.strerror or error}"
+        ) from error

@@ -15,10 +15,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from moka.core.atomic_file import atomic_file
+from moka.core.atomic_file import image_file
 from moka.core.errors import ImageFileError
 
-__all__ = ["EXR_COMPRESSIONS", "read_exr", "write_exr"]
+__all__ = ["EXR_COMPRESSIONS", "read_exr", "store_exr", "write_exr"]
 
 Layers: TypeAlias = Mapping[str, NDArray[Any]]
 
@@ -63,8 +63,28 @@ def write_exr(
     stored as such. Without ``compression`` (one of EXR_COMPRESSIONS) half
     floats are zipped, to about a third of their size, and float32 is not:
     its mantissas shrink to 0.6 of their size in seven times the time.
-    Raises ImageFileError when the file cannot be written.
+    A file at ``path`` is replaced at once or not at all. Raises
+    ImageFileError when it cannot be written.
     """
+    with image_file(path) as temporary:
+        store_exr(
+            temporary,
+            pixels,
+            half=half,
+            compression=compression,
+            layers=layers,
+        )
+
+
+def store_exr(
+    path: Path,
+    pixels: NDArray[np.floating[Any]],
+    *,
+    half: bool = False,
+    compression: str | None = None,
+    layers: Layers | None = None,
+) -> None:
+    """:func:`write_exr` straight into ``path``; raises OSError."""
     import OpenEXR
 
     compression = compression or ("zip" if half else "none")
@@ -87,12 +107,9 @@ def write_exr(
         "type": OpenEXR.scanlineimage,
     }
     try:
-        with atomic_file(path) as temporary:
-            OpenEXR.File(header, channels).write(str(temporary))
-    except (OSError, RuntimeError) as error:
-        raise ImageFileError(
-            f"{os.fspath(path)}: cannot write the image: {_reason(error)}"
-        ) from error
+        OpenEXR.File(header, channels).write(str(path))
+    except RuntimeError as error:
+        raise OSError(_reason(error)) from error
 
 
 def read_exr(

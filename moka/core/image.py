@@ -1,17 +1,19 @@
 """A rendered picture: linear radiance, and how a display shows it."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.core.atomic_file import image_file
 from moka.core.colour import encode_srgb8
 from moka.core.errors import ImageFileError, OptionError
-from moka.core.exr import write_exr
-from moka.core.png import encode_png, write_png
+from moka.core.exr import store_exr
+from moka.core.png import encode_png
 from moka.core.tone_map import tone_map as map_tones
 
 __all__ = ["Image"]
@@ -27,28 +29,31 @@ class Image:
     multiplied by alpha (associated), then alpha. ``tone_map`` and
     ``exposure`` (in EV) are how it is shown unless asked otherwise.
     ``display`` is the picture as uint8 (H, W, 4) that the GPU already made
-    with just these two, sRGB-encoded and with alpha not associated.
-    ``layers`` are further values that an EXR file takes along, by names as
-    :mod:`moka.core.exr` describes them.
+    with just these two, sRGB-encoded and with alpha not associated; one of
+    the two may be missing where nobody needs it. ``layers`` are further
+    values that an EXR file takes along, by names as :mod:`moka.core.exr`
+    describes them.
     """
 
     def __init__(
         self,
-        pixels: NDArray[np.float32],
+        pixels: NDArray[np.float32] | None,
         *,
         tone_map: str = "neutral",
         exposure: float = 0.0,
         display: NDArray[np.uint8] | None = None,
         layers: Mapping[str, NDArray[Any]] | None = None,
     ) -> None:
-        if pixels.ndim != 3 or pixels.shape[2] != 4:
-            raise ValueError(f"not RGBA pixels: shape {pixels.shape}")
-        if display is not None and display.shape != pixels.shape:
-            raise ValueError("pixels and display are of different sizes")
-        self.pixels = pixels
+        shapes = {a.shape for a in (pixels, display) if a is not None}
+        if len(shapes) != 1:
+            raise ValueError("pixels and display are missing or differ in size")
+        self._shape = shapes.pop()
+        if len(self._shape) != 3 or self._shape[2] != 4:
+            raise ValueError(f"not RGBA pixels: shape {self._shape}")
         self.tone_map = tone_map
         self.exposure = exposure
         self.layers = dict(layers or {})
+        self._pixels = pixels
         self._display = display
 
     def __repr__(self) -> str:
@@ -56,9 +61,22 @@ class Image:
         return f"Image({width} x {height})"
 
     @property
+    def pixels(self) -> NDArray[np.float32]:
+        """Linear radiance and alpha, float32 (H, W, 4), top row first.
+
+        Raises ImageFileError if the picture was made for a display only.
+        """
+        if self._pixels is None:
+            raise ImageFileError(
+                "this picture was made for a display only; "
+                "render it again with its pixels"
+            )
+        return self._pixels
+
+    @property
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
-        height, width, _ = self.pixels.shape
+        height, width, _ = self._shape
         return width, height
 
     def save(
@@ -72,25 +90,41 @@ class Image:
     ) -> None:
         """Write a .png or .exr file, whole or not at all.
 
-        A .png is what :meth:`to_display` gives. An .exr holds the linear
-        pixels and the layers, as half floats if ``half``; only an exposure
-        that is given here scales it. Raises ImageFileError for another
-        suffix and when the file cannot be written.
+        A .png is what :meth:`to_display` gives for the first three options.
+        An .exr holds the linear pixels, never exposed, and the layers; as
+        half floats if ``half``. Raises ImageFileError for another suffix
+        and when the file cannot be written.
         """
-        suffix = Path(path).suffix.lower()
-        if suffix == ".png":
-            write_png(path, self.to_display(tone_map, exposure, gamma))
-        elif suffix == ".exr":
-            pixels = self.pixels
-            if exposure:
-                gain = 2.0**exposure
-                pixels = pixels * np.array([gain, gain, gain, 1], np.float32)
-            write_exr(path, pixels, half=half, layers=self.layers)
-        else:
-            raise ImageFileError(
-                f"{os.fspath(path)}: cannot write images of this kind; "
-                "use .png or .exr"
-            )
+        self.save_all(
+            [path], tone_map=tone_map, exposure=exposure, gamma=gamma, half=half
+        )
+
+    def save_all(
+        self,
+        paths: Iterable[str | os.PathLike[str]],
+        *,
+        tone_map: str | None = None,
+        exposure: float | None = None,
+        gamma: float | None = None,
+        half: bool = False,
+    ) -> None:
+        """:meth:`save` to every path, or to none if one of them fails."""
+        with ExitStack() as files:
+            for path in paths:
+                suffix = Path(path).suffix.lower()
+                if suffix == ".png":
+                    shown = self.to_display(tone_map, exposure, gamma)
+                    file = files.enter_context(image_file(path))
+                    file.write_bytes(encode_png(shown))
+                elif suffix == ".exr":
+                    pixels = self.pixels
+                    file = files.enter_context(image_file(path))
+                    store_exr(file, pixels, half=half, layers=self.layers)
+                else:
+                    raise ImageFileError(
+                        f"{os.fspath(path)}: cannot write images of this "
+                        "kind; use .png or .exr"
+                    )
 
     def to_display(
         self,
@@ -114,7 +148,7 @@ class Image:
         if gamma is not None and not gamma > 0.0:
             raise OptionError(f"a gamma of {gamma} is not positive")
 
-        shown = np.empty(self.pixels.shape, np.uint8)
+        shown = np.empty(self._shape, np.uint8)
         for start in range(0, len(shown), _ROWS):
             rows = self.pixels[start : start + _ROWS]
             colour, alpha = rows[:, :, :3], rows[:, :, 3:]

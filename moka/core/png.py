@@ -15,8 +15,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from moka.core.atomic_file import atomic_file
-from moka.core.errors import ImageFileError
+from moka.core.atomic_file import image_file
 
 __all__ = ["encode_png", "write_png"]
 
@@ -42,13 +41,8 @@ def write_png(
     if not isinstance(path, str | os.PathLike):
         path.write(data)
         return
-    try:
-        with atomic_file(path) as temporary:
-            temporary.write_bytes(data)
-    except OSError as error:
-        raise ImageFileError(
-            f"{os.fspath(path)}: cannot write the image: {error.strerror}"
-        ) from error
+    with image_file(path) as temporary:
+        temporary.write_bytes(data)
 
 
 def encode_png(pixels: NDArray[np.uint8]) -> bytes:

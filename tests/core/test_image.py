@@ -87,19 +87,41 @@ def test_png_is_the_display_picture(tmp_path: Path) -> None:
         np.testing.assert_array_equal(file, shown[:, :, :3])
 
 
-def test_exr_is_radiance_unless_an_exposure_is_given(tmp_path: Path) -> None:
+def test_exr_is_radiance_whatever_the_exposure(tmp_path: Path) -> None:
     pixels = radiance()
     depth = pixels[:, :, 0]
     image = Image(pixels, exposure=3.0, layers={"depth.Z": depth})
-    image.save(tmp_path / "a.exr")
+    image.save(tmp_path / "a.exr", exposure=2.0)
     read, layers = read_exr(tmp_path / "a.exr")
     np.testing.assert_array_equal(read, pixels)
     np.testing.assert_array_equal(layers["depth.Z"], depth)
 
-    image.save(tmp_path / "b.exr", exposure=-1.0)
-    read, _ = read_exr(tmp_path / "b.exr")
-    np.testing.assert_array_equal(read[:, :, :3], pixels[:, :, :3] / 2.0)
-    np.testing.assert_array_equal(read[:, :, 3], pixels[:, :, 3])
+
+def test_several_files_are_written_or_none(tmp_path: Path) -> None:
+    image = Image(radiance())
+    image.save_all([tmp_path / "a.png", tmp_path / "a.exr"], half=True)
+    assert {path.name for path in tmp_path.iterdir()} == {"a.png", "a.exr"}
+
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    for bad in ("missing/b.exr", "missing/b.png", "b.jpg"):
+        with pytest.raises(ImageFileError, match=bad):
+            image.save_all(
+                [tmp_path / "a.png", tmp_path / "c.exr", tmp_path / bad],
+                tone_map="none",
+            )
+        after = {path: path.read_bytes() for path in tmp_path.iterdir()}
+        assert after == before
+
+
+def test_picture_for_a_display_only(tmp_path: Path) -> None:
+    display = np.full((3, 2, 4), 200, np.uint8)
+    image = Image(None, display=display)
+    assert image.size == (2, 3)
+    image.save(tmp_path / "a.png")
+    with pytest.raises(ImageFileError, match="display only"):
+        image.save(tmp_path / "a.exr")
+    with pytest.raises(ImageFileError, match="display only"):
+        image.to_display("aces")
 
 
 def test_notebooks_show_a_png() -> None:
@@ -117,7 +139,7 @@ def test_other_suffixes_are_refused(tmp_path: Path) -> None:
 def test_wrong_shapes_are_refused() -> None:
     with pytest.raises(ValueError, match="RGBA"):
         Image(np.zeros((2, 2, 3), np.float32))
-    with pytest.raises(ValueError, match="different sizes"):
+    with pytest.raises(ValueError, match="differ in size"):
         Image(radiance(), display=np.zeros((2, 2, 4), np.uint8))
 
 
