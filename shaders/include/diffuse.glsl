@@ -5,7 +5,8 @@
 //                               practical energy-preserving rough diffuse
 //                               BRDF"; its roughness is the material's
 // MOKA_DIFFUSE_BURLEY           Burley 2012 as renormalised by Lagarde and
-//                               de Rousiers 2014, "Moving Frostbite to PBR"
+//                               de Rousiers 2014, "Moving Frostbite to PBR";
+//                               it reflects up to 1.03 of the light
 // MOKA_DIFFUSE_BURLEY_ORIGINAL  Burley 2012; it reflects up to 1.56 of the
 //                               light, and is here for comparison
 //

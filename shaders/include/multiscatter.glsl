@@ -5,7 +5,7 @@
 // scale + bias if nothing is absorbed. Both functions depend on the view
 // alone, so lights and environments share them: a sun has the same effect
 // in the map and as a light, a white metal under uniform light returns
-// exactly 1, and a dielectric whose diffuse colour is at most 1 never more.
+// exactly 1, and a dielectric never more than 1 if its base does not.
 
 // The part of uniform light that the specular lobe reflects.
 vec3 specular_albedo(vec3 f0, vec3 f90, vec2 table) {
