@@ -21,5 +21,9 @@ void main() {
         (direction_from_clip * clip).xyz);
     // An explicit level: derivatives jump where u wraps around.
     vec3 radiance = textureLod(environment_map, place, parameters.y).rgb;
-    colour = vec4(min(parameters.x * radiance, HALF_MAXIMUM), 1.0);
+    radiance *= parameters.x;
+#ifndef MOKA_FLOAT_TARGET
+    radiance = min(radiance, HALF_MAXIMUM);
+#endif
+    colour = vec4(radiance, 1.0);
 }

@@ -27,5 +27,5 @@ void main() {
             weights += weight;
         }
     }
-    radiance = vec4(min(sum / weights, HALF_MAXIMUM), 1.0);
+    radiance = vec4(sum / weights, 1.0);
 }

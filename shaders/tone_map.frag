@@ -8,6 +8,9 @@
 
 layout(std140) uniform ToneMap {
     vec4 parameters;  // x factor of exposure (2^EV), y 1 / gamma
+    // Linear display colour that shows where coverage is below 1, if w is 1.
+    // It is not exposed or tone mapped: #336699 leaves as #336699.
+    vec4 background;
 };
 
 uniform sampler2D radiance_map;  // read texel by texel at gl_FragCoord
@@ -19,6 +22,10 @@ void main() {
     float alpha = clamp(texel.a, 0.0, 1.0);
     vec3 straight = alpha > 0.0 ? texel.rgb / alpha : vec3(0.0);
     vec3 display = tone_map(parameters.x * straight);
+    if (background.w > 0.0) {
+        display = mix(background.rgb, display, alpha);
+        alpha = 1.0;
+    }
 #ifdef MOKA_ENCODE_GAMMA
     colour = vec4(pow(max(display, 0.0), vec3(parameters.y)), alpha);
 #else

@@ -49,7 +49,7 @@ class FullscreenPasses:
         return self._programs.get(
             (fragment, tuple(sorted(defines.items()))),
             lambda: ProgramDescriptor(
-                load_shader("fullscreen.vert"),
+                load_shader("fullscreen.vert", defines),
                 load_shader(fragment, defines),
                 fragment,
             ),

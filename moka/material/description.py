@@ -37,6 +37,8 @@ class Feature(IntFlag):
     ALPHA_BLEND = auto()
     DOUBLE_SIDED = auto()
     UNLIT = auto()
+    # Not a pure metal: some light enters the surface and is scattered.
+    DIFFUSE = auto()
     EMISSIVE = auto()
     # Roughness, metalness and occlusion read from one sample of one texture.
     PACKED_OCCLUSION = auto()
@@ -97,8 +99,11 @@ def describe_material(
     if material.unlit:
         features |= Feature.UNLIT
         slots = {k: v for k, v in slots.items() if k == "base_colour"}
-    elif any(material.emissive_factor):
-        features |= Feature.EMISSIVE
+    else:
+        if any(material.emissive_factor):
+            features |= Feature.EMISSIVE
+        if material.metallic_factor < 1 or "metallic_roughness" in slots:
+            features |= Feature.DIFFUSE
     slots = {
         slot: texture
         for slot, texture in slots.items()

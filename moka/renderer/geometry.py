@@ -7,7 +7,7 @@ uploaded.
 """
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,14 +19,14 @@ from moka.commands.descriptors import (
     BufferUsage,
     IndexType,
     MeshDescriptor,
-    Topology,
     VertexAttribute,
     VertexLayout,
 )
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
+from moka.model.mesh import Primitive
 
-__all__ = ["GeometryRequest", "UploadedGeometry", "upload_geometry"]
+__all__ = ["GeometryPool"]
 
 # glTF attribute: shader input, components. All are float32 on the GPU.
 _ATTRIBUTES = {
@@ -40,26 +40,64 @@ _ATTRIBUTES = {
 
 
 @dataclass(frozen=True, slots=True)
-class GeometryRequest:
-    """A primitive's arrays and the glTF attributes that are wanted."""
+class _Key:
+    """A primitive and the attributes of it that are uploaded."""
 
-    topology: Topology
-    attributes: Mapping[str, NDArray[Any]]
-    indices: NDArray[Any] | None
+    primitive: Primitive
     wanted: tuple[str, ...]
 
-    @property
-    def vertex_count(self) -> int:
-        """How many vertices the arrays hold."""
-        return len(self.attributes["POSITION"])
+
+@dataclass(slots=True)
+class _Upload:
+    """Meshes that share buffers, and how many of them are in use."""
+
+    meshes: dict[_Key, Handle]
+    buffers: list[Handle]
 
 
-@dataclass(frozen=True, slots=True)
-class UploadedGeometry:
-    """Meshes in the order of the requests, and all handles to destroy."""
+class GeometryPool:
+    """The meshes of one device, by primitive and attributes.
 
-    meshes: tuple[Handle, ...]
-    buffers: tuple[Handle, ...]
+    What was uploaded together is freed together, once nothing uses it.
+    """
+
+    def __init__(self, device: GraphicsDevice) -> None:
+        self._device = device
+        self._uploads: list[_Upload] = []
+        self._meshes: dict[_Key, Handle] = {}
+
+    def meshes(
+        self, wanted: Sequence[tuple[Primitive, tuple[str, ...]]]
+    ) -> list[Handle]:
+        """The meshes of these primitives, in order.
+
+        What is missing is uploaded; what is not asked for again is freed.
+        """
+        keys = [_Key(*each) for each in wanted]
+        used = set(keys)
+        for upload in list(self._uploads):
+            if used.isdisjoint(upload.meshes):
+                self._free(upload)
+        missing = [
+            key for key in dict.fromkeys(keys) if key not in self._meshes
+        ]
+        groups: dict[tuple[tuple[str, ...], bool], list[_Key]] = defaultdict(
+            list
+        )
+        for key in missing:
+            indexed = key.primitive.indices is not None
+            groups[key.wanted, indexed].append(key)
+        for members in groups.values():
+            upload = _upload(self._device, members)
+            self._uploads.append(upload)
+            self._meshes.update(upload.meshes)
+        return [self._meshes[key] for key in keys]
+
+    def _free(self, upload: _Upload) -> None:
+        for key in upload.meshes:
+            del self._meshes[key]
+        self._uploads.remove(upload)
+        self._device.destroy(*upload.meshes.values(), *upload.buffers)
 
 
 def vertex_layout(wanted: Sequence[str]) -> VertexLayout:
@@ -75,77 +113,63 @@ def vertex_layout(wanted: Sequence[str]) -> VertexLayout:
     return VertexLayout(tuple(attributes), offset)
 
 
-def upload_geometry(
-    device: GraphicsDevice, requests: Sequence[GeometryRequest]
-) -> UploadedGeometry:
-    """Make the meshes of ``requests``; two buffers per vertex layout."""
-    groups: dict[tuple[tuple[str, ...], bool], list[int]] = defaultdict(list)
-    for number, request in enumerate(requests):
-        groups[request.wanted, request.indices is not None].append(number)
-    meshes: dict[int, Handle] = {}
-    buffers: list[Handle] = []
-    for (wanted, indexed), numbers in groups.items():
-        members = [requests[number] for number in numbers]
-        layout = vertex_layout(wanted)
-        vertex_buffer = _buffer(
-            device,
-            BufferUsage.VERTEX,
-            np.concatenate([_interleave(member) for member in members]),
-        )
-        buffers.append(vertex_buffer)
-        index_buffer, index_type = None, IndexType.UINT32
-        if indexed:
-            index_type = _index_type(members)
-            indices = np.concatenate(
-                [np.asarray(member.indices).ravel() for member in members],
-                dtype=index_type.value,
-                casting="unsafe",
-            )
-            index_buffer = _buffer(device, BufferUsage.INDEX, indices)
-            buffers.append(index_buffer)
-        base_vertex = first = 0
-        for number, member in zip(numbers, members, strict=True):
-            count = (
-                member.vertex_count
-                if member.indices is None
-                else member.indices.size
-            )
-            meshes[number] = device.create_mesh(
-                MeshDescriptor(
-                    member.topology,
-                    count,
-                    first,
-                    base_vertex,
-                    vertex_buffer,
-                    layout,
-                    index_buffer,
-                    index_type,
-                )
-            )
-            base_vertex += member.vertex_count
-            first += count if indexed else 0
-    return UploadedGeometry(
-        tuple(meshes[number] for number in range(len(requests))),
-        tuple(buffers),
+def _upload(device: GraphicsDevice, members: Sequence[_Key]) -> _Upload:
+    """One vertex and one index buffer for primitives of one layout."""
+    layout = vertex_layout(members[0].wanted)
+    vertex_buffer = _buffer(
+        device,
+        BufferUsage.VERTEX,
+        np.concatenate([_interleave(key) for key in members]),
     )
+    buffers = [vertex_buffer]
+    index_buffer, index_type = None, IndexType.UINT32
+    indices = [
+        key.primitive.indices
+        for key in members
+        if key.primitive.indices is not None
+    ]
+    if indices:
+        # 16 bits if every primitive's own vertices can be counted with them.
+        if max(key.primitive.vertex_count for key in members) <= 0xFFFF:
+            index_type = IndexType.UINT16
+        joined = np.concatenate(
+            indices, dtype=index_type.value, casting="unsafe"
+        )
+        index_buffer = _buffer(device, BufferUsage.INDEX, joined)
+        buffers.append(index_buffer)
+    meshes = {}
+    base_vertex = first = 0
+    for key in members:
+        primitive = key.primitive
+        count = primitive.index_count or primitive.vertex_count
+        meshes[key] = device.create_mesh(
+            MeshDescriptor(
+                primitive.topology,
+                count,
+                first,
+                base_vertex,
+                vertex_buffer,
+                layout,
+                index_buffer,
+                index_type,
+            )
+        )
+        base_vertex += primitive.vertex_count
+        first += count if indices else 0
+    return _Upload(meshes, buffers)
 
 
-def _interleave(request: GeometryRequest) -> NDArray[np.float32]:
-    columns = [request.attributes[name] for name in request.wanted]
+def _interleave(key: _Key) -> NDArray[np.float32]:
+    columns = [key.primitive.attributes[name] for name in key.wanted]
     vertices = np.empty(
-        (request.vertex_count, sum(c.shape[1] for c in columns)), np.float32
+        (key.primitive.vertex_count, sum(c.shape[1] for c in columns)),
+        np.float32,
     )
     start = 0
     for column in columns:
         vertices[:, start : start + column.shape[1]] = column
         start += column.shape[1]
     return vertices.reshape(-1)
-
-
-def _index_type(members: Sequence[GeometryRequest]) -> IndexType:
-    """16 bits if every primitive's own vertices can be counted with them."""
-    largest = max(member.vertex_count for member in members)
-    return IndexType.UINT16 if largest <= 0xFFFF else IndexType.UINT32
 
 
 def _buffer(

@@ -20,15 +20,13 @@ __all__ = ["Targets", "make_targets"]
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """The framebuffers of one picture size and how many samples they have.
+    """The framebuffers of one size, sample count and float output.
 
     ``scene`` is drawn into, ``resolved`` holds one radiance per pixel (the
     same framebuffer without multisampling), ``display`` tone mapped bytes.
     """
 
-    size: tuple[int, int]
-    samples: int
-    colour_format: PixelFormat
+    made_for: tuple[tuple[int, int], int, bool]
     scene: Handle
     resolved: Handle
     resolved_texture: Handle
@@ -83,9 +81,7 @@ def make_targets(
         scene = resolved = framebuffer(resolved_texture, depth)
     display = framebuffer(texture(PixelFormat.RGBA8))
     return Targets(
-        size,
-        samples,
-        colour_format,
+        (size, samples, float_output),
         scene,
         resolved,
         resolved_texture,

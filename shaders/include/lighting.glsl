@@ -78,9 +78,9 @@ vec3 environment_light(Surface surface) {
 #ifdef MOKA_PUNCTUAL_LIGHTS
 
 // KHR_lights_punctual: the window that takes a light to nothing at its
-// range, times the inverse square. one_over_range is 0 without a range.
-float distance_attenuation(float squared_distance, float one_over_range) {
-    float ratio = squared_distance * one_over_range * one_over_range;
+// range, times the inverse square. inverse_range is 0 without a range.
+float distance_attenuation(float squared_distance, float inverse_range) {
+    float ratio = squared_distance * inverse_range * inverse_range;
     float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
     // A point light on the surface itself would be infinite; the nearest a
     // light can be is a tenth of a millimetre.
@@ -93,19 +93,18 @@ vec3 punctual_light(Surface surface) {
     float k = schlick_k_direct(surface.roughness);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < light_count; ++i) {
-        vec3 towards = light_position[i].xyz - surface_position;
+        LightsRow light = lights[i];
+        vec3 towards = -light.direction;
         float attenuation = 1.0;
-        if (light_position[i].w == 0.0) {
-            towards = -light_direction[i].xyz;
-        } else {
+        if (light.positional != 0.0) {
+            towards = light.position - surface_position;
             float squared = dot(towards, towards);
-            attenuation =
-                distance_attenuation(squared, light_direction[i].w);
             towards *= inversesqrt(max(squared, 1e-30));
-            float cone = dot(-towards, light_direction[i].xyz);
+            float cone = dot(-towards, light.direction);
             float spot = clamp(
-                cone * light_cone[i].x + light_cone[i].y, 0.0, 1.0);
-            attenuation *= spot * spot;
+                cone * light.angle_scale + light.angle_offset, 0.0, 1.0);
+            attenuation = spot * spot
+                * distance_attenuation(squared, light.inverse_range);
         }
         Angles angles =
             angles_between(surface.normal, surface.view, towards);
@@ -115,7 +114,7 @@ vec3 punctual_light(Surface surface) {
         vec3 reflected = fresnel * scale * specular_lobe(angles, alpha, k)
             + (1.0 - fresnel) * diffuse_brdf(
                 angles, surface.diffuse_colour, surface.roughness);
-        sum += reflected * light_intensity[i].rgb
+        sum += reflected * light.intensity
             * (angles.n_dot_l * attenuation);
     }
     return sum;

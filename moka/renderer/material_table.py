@@ -1,0 +1,84 @@
+"""The rows of all materials on the GPU, in pages of one uniform block.
+
+Materials with texture transforms have longer rows and pages of their own.
+"""
+
+from collections.abc import Collection, Hashable
+from dataclasses import dataclass
+
+import numpy as np
+
+from moka.commands.descriptors import BufferDescriptor, BufferUsage
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+from moka.material.material import Material
+from moka.material.parameters import material_values
+from moka.renderer.permutation import materials_layout
+
+__all__ = ["MaterialPlace", "MaterialTable"]
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialPlace:
+    """The page that holds a material, and its row there."""
+
+    page: Handle
+    row: int
+
+
+class MaterialTable:
+    """Places of materials; the table is written once when it is made."""
+
+    def __init__(
+        self,
+        device: GraphicsDevice,
+        materials: Collection[tuple[Material, bool]],
+    ) -> None:
+        """Place each material, with transforms or not, in the GPU's pages."""
+        self._device = device
+        self._places: dict[Hashable, MaterialPlace] = {}
+        self.pages: list[Handle] = []
+        for has_transforms in (False, True):
+            members = list(
+                dict.fromkeys(
+                    material
+                    for material, transforms in materials
+                    if transforms == has_transforms
+                )
+            )
+            self._write(members, has_transforms=has_transforms)
+
+    def place(
+        self, material: Material, *, has_transforms: bool
+    ) -> MaterialPlace:
+        """Where ``material`` lies."""
+        return self._places[material, has_transforms]
+
+    def destroy(self) -> None:
+        """Destroy the pages."""
+        self._device.destroy(*self.pages)
+        self.pages.clear()
+
+    def _write(
+        self, materials: list[Material], *, has_transforms: bool
+    ) -> None:
+        layout = materials_layout(has_transforms=has_transforms)
+        for start in range(0, len(materials), layout.rows):
+            members = materials[start : start + layout.rows]
+            rows = np.zeros(layout.rows, layout.dtype)
+            for index, material in enumerate(members):
+                layout.fill(
+                    rows[index : index + 1],
+                    material_values(material, has_transforms=has_transforms),
+                )
+            page = self._device.create_buffer(
+                BufferDescriptor(
+                    BufferUsage.UNIFORM, rows.nbytes, label="materials"
+                ),
+                rows.tobytes(),
+            )
+            self.pages.append(page)
+            for index, material in enumerate(members):
+                self._places[material, has_transforms] = MaterialPlace(
+                    page, index
+                )

@@ -1,0 +1,149 @@
+"""Which program draws a material under the lighting of a frame."""
+
+from dataclasses import dataclass
+
+from moka.commands.descriptors import ProgramDescriptor
+from moka.graphics.shader_source import load_shader
+from moka.graphics.uniform_block import (
+    Parameter,
+    ParameterType,
+    UniformLayout,
+)
+from moka.material.description import (
+    Feature,
+    MaterialDescription,
+    defines_of,
+)
+from moka.material.parameters import material_layout
+
+__all__ = [
+    "FRAME",
+    "LightingDescription",
+    "Permutation",
+    "lights_layout",
+    "materials_layout",
+]
+
+# What the whole frame shares. World space has its origin at the camera, so
+# that positions a million metres from zero keep their detail.
+FRAME = UniformLayout(
+    "Frame",
+    (
+        Parameter("clip_from_world", ParameterType.MAT4),
+        # Towards the viewer from p: xyz - p * w. Perspective is (0, 0, 0, 1).
+        Parameter("eye", ParameterType.VEC4),
+        # Cosine and sine of the environment's rotation about +Y.
+        Parameter("environment_turn", ParameterType.VEC2),
+        Parameter("environment_intensity", ParameterType.FLOAT),
+        # The level of the specular cube for roughness 1.
+        Parameter("specular_levels", ParameterType.FLOAT),
+        Parameter("light_count", ParameterType.INT),
+        Parameter("point_size", ParameterType.FLOAT),
+    ),
+)
+
+# A uniform block of 16 KiB is what every driver has.
+_BLOCK_BYTES = 16384
+
+
+def lights_layout(capacity: int) -> UniformLayout:
+    """The block ``Lights``: rows of :data:`moka.scene.lights.LIGHT`."""
+    return UniformLayout(
+        "Lights",
+        (
+            Parameter("position", ParameterType.VEC3),
+            Parameter("positional", ParameterType.FLOAT),
+            Parameter("direction", ParameterType.VEC3),
+            Parameter("inverse_range", ParameterType.FLOAT),
+            Parameter("intensity", ParameterType.VEC3),
+            Parameter("angle_scale", ParameterType.FLOAT),
+            Parameter("angle_offset", ParameterType.FLOAT),
+        ),
+        capacity,
+    )
+
+
+def materials_layout(*, has_transforms: bool) -> UniformLayout:
+    """A page of the material table: as many rows as a block can hold."""
+    row = material_layout(1, has_transforms=has_transforms)
+    return material_layout(
+        _BLOCK_BYTES // row.size, has_transforms=has_transforms
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class LightingDescription:
+    """What lights a frame, as far as it changes the shader's text.
+
+    ``light_capacity`` is 0 without punctual lights, else the power of two
+    that holds them.
+    """
+
+    environment: bool
+    light_capacity: int
+    brdf: str
+    diffuse: str
+    multiscatter: bool
+    float_target: bool
+
+    def defines(self, features: Feature) -> dict[str, int]:
+        """The defines for a material with ``features``."""
+        defines: dict[str, int] = {}
+        if self.float_target:
+            defines["MOKA_FLOAT_TARGET"] = 1
+        if Feature.UNLIT in features:
+            return defines
+        defines[f"MOKA_BRDF_{_macro(self.brdf)}"] = 1
+        defines[f"MOKA_DIFFUSE_{_macro(self.diffuse)}"] = 1
+        if self.environment:
+            defines["MOKA_ENVIRONMENT"] = 1
+            if Feature.DIFFUSE in features:
+                defines["MOKA_IRRADIANCE"] = 1
+        if self.light_capacity:
+            defines["MOKA_PUNCTUAL_LIGHTS"] = 1
+        if self.multiscatter:
+            defines["MOKA_MULTISCATTER"] = 1
+        if self.needs_table:
+            defines["MOKA_BRDF_TABLE"] = 1
+        return defines
+
+    @property
+    def needs_table(self) -> bool:
+        """Whether lit materials read the table of directional albedo."""
+        compensates = self.multiscatter and self.brdf != "blinn-phong"
+        return self.environment or bool(self.light_capacity and compensates)
+
+
+@dataclass(frozen=True, slots=True)
+class Permutation:
+    """Key of the table of loaded surface programs."""
+
+    material: MaterialDescription
+    lighting: LightingDescription
+
+    @property
+    def has_transforms(self) -> bool:
+        """Whether its material rows carry texture transforms."""
+        return any(use.has_transform for use in self.material.textures)
+
+    def program(self) -> ProgramDescriptor:
+        """The sources that compile it."""
+        features = self.material.features
+        defines: dict[str, str | int] = {
+            **defines_of(self.material),
+            **self.lighting.defines(features),
+        }
+        blocks = FRAME.glsl
+        blocks += materials_layout(has_transforms=self.has_transforms).glsl
+        if "MOKA_PUNCTUAL_LIGHTS" in defines:
+            blocks += lights_layout(self.lighting.light_capacity).glsl
+        names = " ".join(name.removeprefix("MOKA_") for name in defines)
+        return ProgramDescriptor(
+            load_shader("surface.vert", defines, injected=FRAME.glsl),
+            load_shader("surface.frag", defines, injected=blocks),
+            f"surface ({names})",
+        )
+
+
+def _macro(option: str) -> str:
+    return option.upper().replace("-", "_")

@@ -1,0 +1,281 @@
+"""Everything about a scene that stays the same from frame to frame.
+
+Made when models come or go or when the lighting changes the shaders; then a
+frame is array operations over the rows that are made here.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from moka.commands.descriptors import (
+    BindGroupDescriptor,
+    BlendState,
+    CompareFunction,
+    CullMode,
+    RasterState,
+    TextureBinding,
+    UniformBinding,
+)
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+from moka.graphics.program_cache import ProgramCache
+from moka.lighting.preintegration import (
+    CUBE_SAMPLER,
+    TABLE_SAMPLER,
+    EnvironmentMaps,
+)
+from moka.material.description import (
+    Feature,
+    MaterialDescription,
+    describe_material,
+    texture_slots,
+)
+from moka.material.material import Material
+from moka.model.mesh import Primitive
+from moka.renderer.geometry import GeometryPool
+from moka.renderer.material_table import MaterialTable
+from moka.renderer.permutation import LightingDescription, Permutation
+from moka.renderer.textures import TexturePool, TextureRequest
+
+__all__ = [
+    "LAYER_BACKGROUND",
+    "PreparedScene",
+    "SceneMaterials",
+    "SharedBindings",
+]
+
+# The frame's order within the scene pass.
+LAYER_OPAQUE = 0
+LAYER_MASK = 1
+LAYER_BACKGROUND = 2
+LAYER_BLENDED = 3
+
+_DEFAULT_MATERIAL = Material(name="glTF default")
+
+# One row per primitive: what its draws bind, whatever their transforms.
+_ROW = np.dtype(
+    [
+        ("program", np.uint32),
+        ("bind_group", np.uint32),
+        ("mesh", np.uint32),
+        ("state", np.uint32),
+        ("material", np.uint32),
+        ("layer", np.uint8),
+        ("blended", np.bool_),
+    ]
+)
+
+
+class SceneMaterials:
+    """Descriptions of the primitives' materials, and their textures begun.
+
+    Made first, so that images decode while everything else goes on.
+    """
+
+    def __init__(
+        self, primitives: Sequence[Primitive], textures: TexturePool
+    ) -> None:
+        self.materials = [
+            primitive.material or _DEFAULT_MATERIAL for primitive in primitives
+        ]
+        self.descriptions: list[MaterialDescription] = []
+        self.requests: list[dict[str, TextureRequest]] = []
+        known: dict[
+            tuple[Material, tuple[str, ...], object],
+            tuple[MaterialDescription, dict[str, TextureRequest]],
+        ] = {}
+        for primitive, material in zip(primitives, self.materials, strict=True):
+            key = (material, tuple(primitive.attributes), primitive.topology)
+            if key not in known:
+                description = describe_material(
+                    material, primitive.attributes, primitive.topology
+                )
+                slots = texture_slots(material)
+                known[key] = (
+                    description,
+                    {
+                        use.slot: textures.request(use.slot, slots[use.slot])
+                        for use in description.textures
+                    },
+                )
+            description, requests = known[key]
+            self.descriptions.append(description)
+            self.requests.append(requests)
+
+    @property
+    def has_lit(self) -> bool:
+        """Whether light matters at all."""
+        return any(
+            Feature.UNLIT not in description.features
+            for description in self.descriptions
+        )
+
+    @property
+    def has_diffuse(self) -> bool:
+        """Whether anything is not a pure metal."""
+        return any(
+            Feature.DIFFUSE in description.features
+            for description in self.descriptions
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SharedBindings:
+    """What every surface's bind group holds besides its own."""
+
+    frame: Handle
+    lights: Handle | None
+    maps: EnvironmentMaps
+    table: Handle | None
+
+
+class PreparedScene:
+    """Rows of what each primitive binds; owns bind groups and pages."""
+
+    def __init__(
+        self,
+        device: GraphicsDevice,
+        primitives: Sequence[Primitive],
+        materials: SceneMaterials,
+        lighting: LightingDescription,
+        shared: SharedBindings,
+        programs: ProgramCache,
+        geometry: GeometryPool,
+        textures: TexturePool,
+    ) -> None:
+        self._device = device
+        permutations = [
+            Permutation(description, lighting)
+            for description in materials.descriptions
+        ]
+        # Programs first: the render thread compiles while images decode.
+        surfaces = [
+            programs.get(permutation, permutation.program)
+            for permutation in permutations
+        ]
+        meshes = geometry.meshes(
+            [
+                (primitive, description.attributes)
+                for primitive, description in zip(
+                    primitives, materials.descriptions, strict=True
+                )
+            ]
+        )
+        self._table = MaterialTable(
+            device,
+            [
+                (material, permutation.has_transforms)
+                for material, permutation in zip(
+                    materials.materials, permutations, strict=True
+                )
+            ],
+        )
+        self._groups: dict[BindGroupDescriptor, Handle] = {}
+        self.states: list[RasterState] = []
+        self.rows = np.zeros(len(primitives), _ROW)
+        is_reversed = device.info.clip_control
+        for index, permutation in enumerate(permutations):
+            material = materials.materials[index]
+            place = self._table.place(
+                material, has_transforms=permutation.has_transforms
+            )
+            group = self._bind_group(
+                material,
+                permutation,
+                materials.requests[index],
+                place.page,
+                shared,
+                textures,
+            )
+            description = permutation.material
+            self.rows[index] = (
+                surfaces[index].index,
+                group.index,
+                meshes[index].index,
+                self._state(description, is_reversed=is_reversed),
+                place.row,
+                _layer(description),
+                description.is_blended,
+            )
+        self.handles = frozenset((*surfaces, *meshes, *self._groups.values()))
+        self.program_count = len(set(surfaces))
+        self.permutation_count = len(set(permutations))
+
+    def destroy(self) -> None:
+        """Destroy what it owns; meshes and textures belong to pools."""
+        self._device.destroy(*self._groups.values())
+        self._groups.clear()
+        self._table.destroy()
+
+    def _bind_group(
+        self,
+        material: Material,
+        permutation: Permutation,
+        requests: dict[str, TextureRequest],
+        page: Handle,
+        shared: SharedBindings,
+        textures: TexturePool,
+    ) -> Handle:
+        slots = texture_slots(material)
+        bound = [
+            TextureBinding(
+                f"{slot}_texture",
+                textures.handle(request),
+                slots[slot].sampler,
+            )
+            for slot, request in requests.items()
+        ]
+        uniforms = [
+            UniformBinding("Frame", shared.frame),
+            UniformBinding("Materials", page),
+        ]
+        if Feature.UNLIT not in permutation.material.features:
+            bound += [
+                TextureBinding(name, handle, sampler)
+                for name, handle, sampler in (
+                    ("specular_cube", shared.maps.specular, CUBE_SAMPLER),
+                    ("irradiance_cube", shared.maps.irradiance, CUBE_SAMPLER),
+                    ("brdf_table", shared.table, TABLE_SAMPLER),
+                )
+                if handle is not None
+            ]
+            if shared.lights is not None:
+                uniforms.append(UniformBinding("Lights", shared.lights))
+        descriptor = BindGroupDescriptor(tuple(bound), tuple(uniforms))
+        if descriptor not in self._groups:
+            group = self._device.create_bind_group(descriptor)
+            self._groups[descriptor] = group
+        return self._groups[descriptor]
+
+    def _state(
+        self, description: MaterialDescription, *, is_reversed: bool
+    ) -> int:
+        """The number of a state; the next one is its mirrored twin."""
+        double_sided = Feature.DOUBLE_SIDED in description.features
+        blended = description.is_blended
+        cull = CullMode.NONE if double_sided else CullMode.BACK
+        nearer = (
+            CompareFunction.GREATER_EQUAL
+            if is_reversed
+            else CompareFunction.LESS_EQUAL
+        )
+        blend = BlendState.PREMULTIPLIED if blended else None
+        pair = [
+            RasterState(
+                cull, clockwise, nearer, depth_write=not blended, blend=blend
+            )
+            for clockwise in (False, True)
+        ]
+        if pair[0] not in self.states:
+            self.states += pair
+        return self.states.index(pair[0])
+
+
+def _layer(description: MaterialDescription) -> int:
+    if description.is_blended:
+        return LAYER_BLENDED
+    if Feature.ALPHA_MASK in description.features:
+        return LAYER_MASK
+    return LAYER_OPAQUE

@@ -1,0 +1,314 @@
+"""The order of a frame: a scene becomes passes, packets and pixels.
+
+    scene pass    opaque, then masked, then the environment behind them,
+                  then blended back to front; linear, multisampled
+    display pass  samples averaged, exposed, tone mapped, encoded
+
+What does not change between frames is prepared once
+(:mod:`moka.renderer.prepared_scene`); a frame itself is array operations:
+cull, key, gather (:mod:`moka.renderer.gather`).
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.command_list import CommandList
+from moka.commands.commands import Readback
+from moka.commands.descriptors import BufferDescriptor, BufferUsage
+from moka.commands.handles import Handle
+from moka.commands.sort_key import SortKey, Stage
+from moka.core.errors import DeviceError
+from moka.core.statistics import Statistics
+from moka.graphics.device import GraphicsDevice
+from moka.graphics.passes import FullscreenPasses
+from moka.graphics.program_cache import ProgramCache
+from moka.renderer.gather import gather_draws
+from moka.renderer.geometry import GeometryPool
+from moka.renderer.light_sources import LightSources, light_capacity
+from moka.renderer.permutation import FRAME, LightingDescription
+from moka.renderer.prepared_scene import (
+    LAYER_BACKGROUND,
+    PreparedScene,
+    SceneMaterials,
+    SharedBindings,
+)
+from moka.renderer.screen_passes import ScreenPasses
+from moka.renderer.settings import RenderSettings
+from moka.renderer.targets import Targets, make_targets
+from moka.renderer.textures import TexturePool
+from moka.renderer.view import View, look_through
+from moka.scene.camera import Camera
+from moka.scene.scene import Scene
+
+__all__ = ["Renderer"]
+
+PASS_SCENE = 1
+PASS_DISPLAY = 2
+PASS_READ = 3
+
+# Points are drawn as squares of this part of the picture's height.
+_POINT_SIZE = 1 / 360
+
+
+class Renderer:
+    """Draws scenes on one device.
+
+    ``size`` is the picture's width and height in pixels, ``settings`` how it
+    is made; both may be replaced between frames. With ``to_window`` the
+    display pass ends in the device's window, else in a texture that
+    :meth:`read_display` reads. ``statistics`` collects times and counters.
+    """
+
+    def __init__(
+        self,
+        device: GraphicsDevice,
+        size: tuple[int, int] = (1280, 720),
+        settings: RenderSettings | None = None,
+        *,
+        to_window: bool = False,
+        statistics: Statistics | None = None,
+    ) -> None:
+        self.device = device
+        self.size = size
+        self.settings = settings or RenderSettings()
+        self.statistics = statistics or Statistics()
+        self._to_window = to_window
+        passes = FullscreenPasses(device)
+        self._screen = ScreenPasses(device, passes)
+        self._sources = LightSources(device, passes, self.statistics)
+        self._programs = ProgramCache(device)
+        self._geometry = GeometryPool(device)
+        self._textures = TexturePool(device, self.statistics)
+        self._frame = device.create_buffer(
+            BufferDescriptor(
+                BufferUsage.UNIFORM, FRAME.size, dynamic=True, label="frame"
+            ),
+            np.zeros(FRAME.size, np.uint8),
+        )
+        self._targets: Targets | None = None
+        self._materials: SceneMaterials | None = None
+        self._materials_key: object = None
+        self._prepared: PreparedScene | None = None
+        self._prepared_key: object = None
+
+    def close(self) -> None:
+        """Stop the decoding threads; resources go with the device."""
+        self._textures.close()
+
+    def begin(self, scene: Scene) -> None:
+        """Start to decode what ``scene`` samples, without waiting for it.
+
+        :meth:`draw` does so too; calling this early overlaps decoding with
+        whatever the caller does before the first frame.
+        """
+        scene.update()
+        self._describe(scene)
+
+    def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
+        """Record a frame of ``scene`` seen by ``camera`` into ``commands``.
+
+        Raises ModelError or ImageFileError for what a material needs and
+        cannot be had.
+        """
+        scene.update()
+        materials = self._describe(scene)
+        width, height = self.size
+        is_reversed = self.device.info.clip_control
+        view = look_through(camera, width / height, reversed_z=is_reversed)
+        lights = self._sources.rows(scene, view.position)
+        capacity = light_capacity(len(lights)) if materials.has_lit else 0
+        self._update_maps(scene, materials)
+        prepared = self._prepare(scene, materials, capacity)
+        targets = self._update_targets()
+        visible = np.flatnonzero(scene.visible(camera, width / height))
+
+        setup = commands.command_buffer(SortKey(PASS_SCENE))
+        setup.fill_buffer(self._frame, self._frame_values(scene, view, lights))
+        if capacity and len(lights):
+            setup.fill_buffer(
+                self._sources.buffer(capacity), lights.view(np.uint8)
+            )
+        setup.bind_framebuffer(targets.scene)
+        is_opaque = scene.background == "environment"
+        setup.clear((0, 0, 0, float(is_opaque)), 0.0 if is_reversed else 1.0)
+        states = np.array(
+            [commands.state_index(state) for state in prepared.states],
+            np.uint32,
+        )
+        commands.use(prepared.handles)
+        commands.draws(
+            *gather_draws(
+                scene.drawables,
+                scene.transforms,
+                prepared,
+                visible,
+                view,
+                states,
+                PASS_SCENE,
+            )
+        )
+        self._draw_behind(scene, view, commands)
+        self._draw_display(scene, targets, commands)
+        self._count(scene, prepared, len(visible))
+
+    def read_display(self, commands: CommandList) -> Readback:
+        """Read the tone mapped bytes (H, W, 4), bottom row first.
+
+        To be recorded after :meth:`draw`.
+        """
+        return self._read(commands, self._current_targets.display, "u1")
+
+    def read_radiance(self, commands: CommandList) -> Readback:
+        """Read linear radiance (H, W, 4) float32, bottom row first.
+
+        Premultiplied by coverage; a background colour is not part of it. To
+        be recorded after :meth:`draw`.
+        """
+        return self._read(commands, self._current_targets.resolved, "f4")
+
+    @property
+    def _current_targets(self) -> Targets:
+        if self._targets is None:
+            raise DeviceError("renderer: nothing has been drawn to read")
+        return self._targets
+
+    def _read(
+        self, commands: CommandList, framebuffer: Handle, dtype: str
+    ) -> Readback:
+        return commands.read_pixels(
+            framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
+        )
+
+    def _describe(self, scene: Scene) -> SceneMaterials:
+        key = (id(scene), scene.structure_version)
+        if self._materials is None or self._materials_key != key:
+            self._materials = SceneMaterials(
+                scene.drawables.primitives, self._textures
+            )
+            self._materials_key = key
+        return self._materials
+
+    def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
+        changed = self._sources.update_maps(
+            scene.environment,
+            background=scene.background == "environment",
+            specular=materials.has_lit,
+            irradiance=materials.has_diffuse,
+        )
+        if changed:
+            self._screen.forget()
+            self._prepared_key = None
+
+    def _prepare(
+        self, scene: Scene, materials: SceneMaterials, capacity: int
+    ) -> PreparedScene:
+        settings = self.settings
+        maps = self._sources.maps
+        lighting = LightingDescription(
+            maps.specular is not None,
+            capacity,
+            settings.brdf,
+            settings.diffuse,
+            settings.multiscatter,
+            settings.float_output,
+        )
+        key = (self._materials_key, lighting)
+        if self._prepared is not None and self._prepared_key == key:
+            return self._prepared
+        if self._prepared is not None:
+            self._prepared.destroy()
+        needs_table = lighting.needs_table and materials.has_lit
+        self._prepared = PreparedScene(
+            self.device,
+            scene.drawables.primitives,
+            materials,
+            lighting,
+            SharedBindings(
+                self._frame,
+                self._sources.buffer(capacity) if capacity else None,
+                maps,
+                self._sources.table(settings.brdf) if needs_table else None,
+            ),
+            self._programs,
+            self._geometry,
+            self._textures,
+        )
+        self._prepared_key = key
+        return self._prepared
+
+    def _update_targets(self) -> Targets:
+        settings = self.settings
+        samples = min(settings.samples, self.device.info.max_samples)
+        wanted = (self.size, samples, settings.float_output)
+        if self._targets is None or self._targets.made_for != wanted:
+            if self._targets is not None:
+                self._screen.forget()
+                self._targets.destroy(self.device)
+            self._targets = make_targets(
+                self.device,
+                self.size,
+                samples,
+                float_output=settings.float_output,
+            )
+        return self._targets
+
+    def _frame_values(
+        self, scene: Scene, view: View, lights: NDArray[np.void]
+    ) -> NDArray[np.void]:
+        rotation = scene.environment_rotation
+        return FRAME.pack(
+            {
+                "clip_from_world": view.clip_from_world,
+                "eye": view.eye,
+                "environment_turn": (math.cos(rotation), math.sin(rotation)),
+                "environment_intensity": scene.environment_intensity,
+                "specular_levels": self._sources.maps.specular_levels - 1,
+                "light_count": len(lights),
+                "point_size": max(1.0, self.size[1] * _POINT_SIZE),
+            }
+        )
+
+    def _draw_behind(
+        self, scene: Scene, view: View, commands: CommandList
+    ) -> None:
+        environment_map = self._sources.maps.map
+        if scene.background != "environment" or environment_map is None:
+            return
+        self._screen.draw_background(
+            commands,
+            SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE),
+            environment_map,
+            view,
+            rotation=scene.environment_rotation,
+            intensity=scene.environment_intensity,
+            float_target=self.settings.float_output,
+        )
+
+    def _draw_display(
+        self, scene: Scene, targets: Targets, commands: CommandList
+    ) -> None:
+        colour = scene.background
+        self._screen.draw_display(
+            commands,
+            SortKey(PASS_DISPLAY),
+            targets,
+            tone_map=self.settings.tone_map,
+            exposure=self.settings.exposure,
+            background=None if isinstance(colour, str) else colour,
+            window=self.size if self._to_window else None,
+        )
+
+    def _count(
+        self, scene: Scene, prepared: PreparedScene, visible: int
+    ) -> None:
+        objects = len(scene.drawables)
+        for name, value in (
+            ("objects", objects),
+            ("visible", visible),
+            ("culled", objects - visible),
+            ("programs", len(self._programs)),
+            ("permutations", prepared.permutation_count),
+        ):
+            self.statistics.set_count(name, value)

@@ -1,0 +1,179 @@
+"""The passes over the whole picture: what is behind, and the display."""
+
+import numpy as np
+
+from moka.commands.command_list import CommandList
+from moka.commands.descriptors import (
+    BindGroupDescriptor,
+    BufferDescriptor,
+    BufferUsage,
+    CompareFunction,
+    CullMode,
+    RasterState,
+    TextureBinding,
+    UniformBinding,
+)
+from moka.commands.handles import Handle
+from moka.commands.sort_key import SortKey
+from moka.graphics.device import GraphicsDevice
+from moka.graphics.passes import FULLSCREEN, FullscreenPasses
+from moka.graphics.uniform_block import (
+    Parameter,
+    ParameterType,
+    UniformLayout,
+)
+from moka.lighting.preintegration import CUBE_SAMPLER, MAP_SAMPLER
+from moka.renderer.targets import Targets
+from moka.renderer.view import View
+
+__all__ = ["ScreenPasses"]
+
+_BACKGROUND = UniformLayout(
+    "Background",
+    (
+        Parameter("direction_from_clip", ParameterType.MAT4),
+        Parameter("parameters", ParameterType.VEC4),
+    ),
+)
+_TONE_MAP = UniformLayout(
+    "ToneMap",
+    (
+        Parameter("parameters", ParameterType.VEC4),
+        Parameter("background", ParameterType.VEC4),
+    ),
+)
+
+
+class ScreenPasses:
+    """Draws the environment behind the scene, and the display from it."""
+
+    def __init__(
+        self, device: GraphicsDevice, passes: FullscreenPasses
+    ) -> None:
+        self._device = device
+        self._passes = passes
+        self._groups: dict[BindGroupDescriptor, Handle] = {}
+        self._background = self._buffer(_BACKGROUND)
+        self._tone_map = self._buffer(_TONE_MAP)
+
+    def forget(self) -> None:
+        """Destroy what refers to textures that are about to go."""
+        self._device.destroy(*self._groups.values())
+        self._groups.clear()
+
+    def draw_background(
+        self,
+        commands: CommandList,
+        key: SortKey,
+        environment_map: Handle,
+        view: View,
+        *,
+        rotation: float,
+        intensity: float,
+        float_target: bool,
+    ) -> None:
+        """Draw the map wherever nothing is nearer.
+
+        ``rotation`` is the environment's, in radians about +Y.
+        """
+        is_reversed = self._device.info.clip_control
+        defines: dict[str, str | int] = {
+            "MOKA_FAR_DEPTH": "0.0" if is_reversed else "1.0"
+        }
+        if float_target:
+            defines["MOKA_FLOAT_TARGET"] = 1
+        values = _BACKGROUND.pack(
+            {
+                "direction_from_clip": view.direction_from_clip(rotation),
+                "parameters": (intensity, 0.0, 0.0, 0.0),
+            }
+        )
+        group = BindGroupDescriptor(
+            (TextureBinding("environment_map", environment_map, MAP_SAMPLER),),
+            (UniformBinding("Background", self._background),),
+        )
+        state = RasterState(
+            cull=CullMode.NONE,
+            depth_test=(
+                CompareFunction.GREATER_EQUAL
+                if is_reversed
+                else CompareFunction.LESS_EQUAL
+            ),
+            depth_write=False,
+        )
+        buffer = commands.command_buffer(key)
+        buffer.fill_buffer(self._background, values)
+        buffer.draw(
+            self._passes.program("background.frag", defines),
+            self._passes.triangle,
+            self._group(group),
+            state,
+        )
+
+    def draw_display(
+        self,
+        commands: CommandList,
+        key: SortKey,
+        targets: Targets,
+        *,
+        tone_map: str,
+        exposure: float,
+        background: tuple[float, float, float] | None,
+        window: tuple[int, int] | None,
+    ) -> None:
+        """Resolve, expose, tone map and encode.
+
+        ``background`` is a linear display colour that shows through where
+        coverage is below 1; None keeps alpha. ``window`` is the size of the
+        window to draw into instead of the display target.
+        """
+        values = _TONE_MAP.pack(
+            {
+                "parameters": (2.0**exposure, 1.0, 0.0, 0.0),
+                "background": (
+                    (0, 0, 0, 0) if background is None else (*background, 1)
+                ),
+            }
+        )
+        group = BindGroupDescriptor(
+            (
+                TextureBinding(
+                    "radiance_map", targets.resolved_texture, CUBE_SAMPLER
+                ),
+            ),
+            (UniformBinding("ToneMap", self._tone_map),),
+        )
+        buffer = commands.command_buffer(key)
+        if targets.scene != targets.resolved:
+            buffer.resolve(targets.scene, targets.resolved)
+        buffer.fill_buffer(self._tone_map, values)
+        if window is None:
+            buffer.bind_framebuffer(targets.display)
+        else:
+            buffer.bind_framebuffer(None)
+            buffer.viewport(0, 0, *window)
+        buffer.draw(
+            self._passes.program(
+                "tone_map.frag", {f"MOKA_TONE_MAP_{tone_map.upper()}": 1}
+            ),
+            self._passes.triangle,
+            self._group(group),
+            FULLSCREEN,
+        )
+
+    def _group(self, descriptor: BindGroupDescriptor) -> Handle:
+        if descriptor not in self._groups:
+            group = self._device.create_bind_group(descriptor)
+            self._groups[descriptor] = group
+        return self._groups[descriptor]
+
+    def _buffer(self, layout: UniformLayout) -> Handle:
+        return self._device.create_buffer(
+            BufferDescriptor(
+                BufferUsage.UNIFORM,
+                layout.size,
+                dynamic=True,
+                label=layout.name,
+            ),
+            np.zeros(layout.size, np.uint8),
+        )

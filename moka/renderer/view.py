@@ -1,0 +1,79 @@
+"""What a camera contributes to a frame, with the origin at the camera.
+
+World coordinates reach the GPU relative to the camera, subtracted in double
+precision, so that a scene a million metres from zero keeps its detail.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from moka.core.maths import Array
+from moka.scene.camera import Camera
+
+__all__ = ["View", "look_through", "turn_matrix"]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Camera matrices of one frame, float64, [row, column].
+
+    ``position`` is the camera in the world, ``matrix`` world to camera,
+    ``projection`` camera to clip space, ``clip_from_world`` the same from
+    world axes with their origin at the camera.
+    """
+
+    position: Array
+    matrix: Array
+    projection: Array
+    clip_from_world: Array
+
+    @property
+    def is_perspective(self) -> bool:
+        """Whether rays meet in one point."""
+        return bool(self.projection[3, 3] == 0)
+
+    @property
+    def eye(self) -> Array:
+        """(4,): from a point p towards the viewer is xyz - p * w."""
+        if self.is_perspective:
+            return np.array([0.0, 0.0, 0.0, 1.0])
+        # Parallel rays: everything is seen along the camera's own axis.
+        return np.append(self.matrix[2, :3], 0.0)
+
+    def direction_from_clip(self, environment_rotation: float) -> Array:
+        """(4, 4): clip (x, y, 0, 1) to a direction of the environment.
+
+        ``environment_rotation`` is in radians about +Y; the direction is in
+        the environment's own space and not of unit length.
+        """
+        camera_from_clip = np.zeros((4, 4))
+        camera_from_clip[2, 3] = -1.0
+        if self.is_perspective:
+            camera_from_clip[0, 0] = 1 / self.projection[0, 0]
+            camera_from_clip[1, 1] = 1 / self.projection[1, 1]
+        world_from_camera = np.eye(4)
+        world_from_camera[:3, :3] = self.matrix[:3, :3].T
+        turn = np.eye(4)
+        turn[:3, :3] = turn_matrix(environment_rotation)
+        return turn @ world_from_camera @ camera_from_clip
+
+
+def look_through(camera: Camera, aspect: float, *, reversed_z: bool) -> View:
+    """The view of ``camera`` for a picture of ``aspect`` (width by height)."""
+    matrix = camera.view_matrix
+    projection = camera.projection_matrix(aspect, reversed_z=reversed_z)
+    rotation = np.eye(4)
+    rotation[:3, :3] = matrix[:3, :3]
+    return View(camera.position, matrix, projection, projection @ rotation)
+
+
+def turn_matrix(rotation: float) -> Array:
+    """(3, 3): world directions to those of an environment turned by radians.
+
+    The environment turns counter-clockwise about +Y seen from above, so its
+    own directions turn back; ``turn_into_environment`` of the shaders.
+    """
+    cosine, sine = math.cos(rotation), math.sin(rotation)
+    return np.array([[cosine, 0, -sine], [0, 1, 0], [sine, 0, cosine]])
