@@ -16,6 +16,7 @@ TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from moka.app.application import App as App
+    from moka.app.application import GameTime as GameTime
     from moka.app.render import render as render
     from moka.app.run import run as run
     from moka.commands.command_list import CommandList as CommandList
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from moka.model import load_model as load_model
     from moka.model import save_model as save_model
     from moka.renderer.renderer import Renderer as Renderer
+    from moka.renderer.settings import RenderSettings as RenderSettings
     from moka.scene.camera import Camera as Camera
     from moka.scene.scene import Scene as Scene
     from moka.scene.transform import Transform as Transform
@@ -50,6 +52,7 @@ __all__ = [
     "DeviceError",
     "Environment",
     "EnvironmentMapError",
+    "GameTime",
     "GraphicsDevice",
     "Image",
     "ImageFileError",
@@ -58,6 +61,7 @@ __all__ = [
     "ModelError",
     "MokaError",
     "OptionError",
+    "RenderSettings",
     "Renderer",
     "Scene",
     "ShaderError",
@@ -79,6 +83,7 @@ _HOMES = {
     "DeviceError": "moka.core.errors",
     "Environment": "moka.lighting.environment",
     "EnvironmentMapError": "moka.core.errors",
+    "GameTime": "moka.app.application",
     "GraphicsDevice": "moka.graphics.device",
     "Image": "moka.core.image",
     "ImageFileError": "moka.core.errors",
@@ -87,6 +92,7 @@ _HOMES = {
     "ModelError": "moka.core.errors",
     "MokaError": "moka.core.errors",
     "OptionError": "moka.core.errors",
+    "RenderSettings": "moka.renderer.settings",
     "Renderer": "moka.renderer.renderer",
     "Scene": "moka.scene.scene",
     "ShaderError": "moka.core.errors",
