@@ -19,6 +19,7 @@ __all__ = [
     "column_major",
     "compose",
     "decompose",
+    "forward_directions",
     "invert_affine",
     "is_mirrored",
     "look_rotation",
@@ -207,6 +208,21 @@ def look_rotation(forward: ArrayLike, up: ArrayLike) -> Array:
     parallel = np.linalg.norm(right, axis=-1, keepdims=True) < _PARALLEL
     right = np.where(parallel, _perpendicular(back, 0), normalise(right))
     return np.stack([right, np.cross(back, right), back], axis=-1)
+
+
+def forward_directions(matrices: ArrayLike) -> Array:
+    """Unit vectors (..., 3) along the -Z axes of affine (..., 4, 4).
+
+    Where cameras and lights of glTF look; scale does not matter, not even
+    one of zero.
+    """
+    linear = np.asarray(matrices, np.float64)[..., :3, :3]
+    back = normalise(linear[..., 2])
+    flat = ~back.any(axis=-1)
+    if flat.any():
+        rotation = quaternion_to_matrix(rotation_and_stretch(linear)[0])
+        back = np.where(flat[..., None], rotation[..., 2], back)
+    return -back
 
 
 def invert_affine(matrices: ArrayLike) -> Array:

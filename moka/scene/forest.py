@@ -93,6 +93,12 @@ class Forest:
         self._parent[row] = parent
         self._linked = False
 
+    def orphans(self, rows: Rows) -> Rows:
+        """Rows that lose their parent, but not themselves, with ``rows``."""
+        removed = np.zeros(self._size + 1, np.bool_)  # A last one for -1.
+        removed[rows] = True
+        return np.flatnonzero(removed[self.parents] & ~removed[:-1])
+
     def free(self, rows: Rows) -> None:
         """Give back ``rows``, which must not have children elsewhere."""
         self._alive[rows] = False
@@ -120,7 +126,7 @@ class Forest:
         ends = np.cumsum(counts)
         first = self._start[rows] - ends + counts
         within = np.arange(ends[-1] if ends.size else 0)
-        return self._children[np.repeat(first, counts) + within]
+        return np.asarray(self._children[np.repeat(first, counts) + within])
 
     def _link(self) -> None:
         """Sort the rows by parent and find their levels."""

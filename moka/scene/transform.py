@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from moka.core.errors import OptionError
 from moka.core.maths import Array, look_rotation, rotation_and_stretch
-from moka.scene.transforms import TransformTree
+from moka.scene.transforms import TransformTree, check_affine
 from moka.scene.values import (
     pyglm,
     to_matrix3,
@@ -24,6 +24,8 @@ from moka.scene.values import (
 )
 
 __all__ = ["Transform"]
+
+_REMOVED = "transform: used after its model was removed from the scene"
 
 
 class Transform:
@@ -54,13 +56,13 @@ class Transform:
     ) -> None:
         tree = TransformTree()
         self._attach(tree, tree.add())
-        # What is left out is not stored: it would only import PyGLM.
-        if position is not None:
-            self.position = position
-        if rotation is not None:
-            self.rotation = rotation
-        if scale is not None:
-            self.scale = scale
+        # The identity is there already, and needs no PyGLM.
+        if position is not None or rotation is not None or scale is not None:
+            self._store(
+                to_vector(_or(position, (0, 0, 0)), "the position"),
+                to_quaternion(_or(rotation, (0, 0, 0, 1))),
+                to_stretch(_or(scale, 1)),
+            )
 
     @classmethod
     def from_matrix(cls, matrix: ArrayLike) -> "Transform":
@@ -91,14 +93,14 @@ class Transform:
     def tree(self) -> TransformTree:
         """The arrays that hold the transform."""
         if self._tree is None:
-            raise OptionError(
-                "transform: used after its model was removed from the scene"
-            )
+            raise OptionError(_REMOVED)
         return self._tree
 
     @property
     def row(self) -> int:
         """Its row in :attr:`tree`."""
+        if self._tree is None:
+            raise OptionError(_REMOVED)
         return self._row
 
     @property
@@ -168,8 +170,18 @@ class Transform:
 
     @property
     def world_matrix(self) -> Array:
-        """The matrix to world space, float64 (4, 4), [row, column]."""
+        """The matrix to world space, float64 (4, 4); takes any affine.
+
+        Setting raises OptionError for what is not affine, and where a parent
+        has scale 0.
+        """
         return np.array(self.tree.world_of(self._row))
+
+    @world_matrix.setter
+    def world_matrix(self, matrix: ArrayLike) -> None:
+        parent = int(self.tree.parents[self._row])
+        world = check_affine(matrix)
+        self.local_matrix = self.tree.relative_to(parent, world)
 
     def translate(self, offset: Any) -> None:
         """Move by ``offset`` in metres."""
@@ -250,10 +262,10 @@ class Transform:
 
     def row_moved(self, tree: TransformTree | None, row: int) -> None:
         """Follow the row; for :class:`TransformTree` alone."""
-        current = self._edit == self.tree.edits(self._row)
+        known = self._edit == self.tree.edits(self._row)
         self._tree = tree
         self._row = row
-        self._edit = tree.edits(row) if tree and current else -1
+        self._edit = tree.edits(row) if known and tree is not None else -1
 
     def _attach(self, tree: TransformTree, row: int) -> None:
         self._tree = tree
@@ -289,3 +301,7 @@ class Transform:
         self.tree.set_local(self._row, local)
         self._parts = (position, rotation, stretch)
         self._edit = self.tree.edits(self._row)
+
+
+def _or(value: Any, default: Any) -> Any:
+    return default if value is None else value

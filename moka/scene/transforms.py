@@ -16,7 +16,7 @@ from moka.core.errors import OptionError
 from moka.core.maths import Array, invert_affine
 from moka.scene.forest import NO_ROWS, Forest, Rows
 
-__all__ = ["RowHandle", "Rows", "TransformTree"]
+__all__ = ["RowHandle", "Rows", "TransformTree", "check_affine"]
 
 _Number = TypeVar("_Number", bound=np.generic)
 
@@ -83,7 +83,7 @@ class TransformTree:
 
         Raises OptionError if ``local`` is not an affine matrix.
         """
-        matrix = np.eye(4) if local is None else _affine(local, ())
+        matrix = np.eye(4) if local is None else check_affine(local)
         return int(self._insert(matrix[None], _ALONE, parent)[0])
 
     def add_many(
@@ -98,7 +98,7 @@ class TransformTree:
         parents = np.asarray(parents, np.intp)
         if (parents >= np.arange(len(parents))).any():
             raise ValueError("a parent must come before its children")
-        local = _affine(local, parents.shape)
+        local = check_affine(local, parents.shape)
         return self._insert(local, parents, parent)
 
     def set_local(self, rows: int | Rows, local: ArrayLike) -> None:
@@ -106,7 +106,7 @@ class TransformTree:
 
         Raises OptionError if a matrix is not affine.
         """
-        self._local[rows] = _affine(local, np.shape(rows))
+        self._local[rows] = check_affine(local, np.shape(rows))
         self._edits[rows] += 1
         self._dirty[rows] = True
         self._stale = True
@@ -155,14 +155,13 @@ class TransformTree:
         Children that are not among them become roots and stay where they
         are in the world.
         """
-        removed = np.zeros(self._forest.size, np.bool_)
-        removed[rows] = True
-        children = self._forest.children_of(rows)
-        for orphan in children[~removed[children]].tolist():
+        for orphan in self._forest.orphans(rows).tolist():
             self.set_local(orphan, self.world_of(orphan))
             self.set_parent(orphan, -1)
-        for row in [row for row in self.handles if removed[row]]:
-            self.handles.pop(row).row_moved(None, -1)
+        for row in rows.tolist():
+            handle = self.handles.pop(row, None)
+            if handle is not None:
+                handle.row_moved(None, -1)
         self._dirty[rows] = False
         self._forest.free(rows)
 
@@ -258,8 +257,12 @@ def _extended(array: NDArray[_Number], more: int) -> NDArray[_Number]:
     return np.concatenate([array, rows])
 
 
-def _affine(matrices: ArrayLike, leading: tuple[int, ...]) -> Array:
-    """``matrices`` as float64 of shape (*leading, 4, 4), checked."""
+def check_affine(matrices: ArrayLike, leading: tuple[int, ...] = ()) -> Array:
+    """``matrices`` as float64 of shape (*leading, 4, 4).
+
+    Raises OptionError for another shape, NaN, infinity, or a last row other
+    than 0, 0, 0, 1.
+    """
     shape = (*leading, 4, 4)
     try:
         matrices = np.asarray(matrices, np.float64)

@@ -160,6 +160,17 @@ def test_looking_along_up_keeps_x(forward: tuple[int, int, int]) -> None:
     assert_allclose(matrix[:, 0], [1, 0, 0])
 
 
+@given(rotations, arrays(np.float64, 3, elements=st.floats(0, 9)))
+def test_forward_is_the_turned_minus_z_at_any_scale(
+    rotation: np.ndarray, scale: np.ndarray
+) -> None:
+    scale[:2] += 0.1
+    matrix = maths.compose([[1, 2, 3]], rotation, scale)
+    forward = Rotation.from_quat(rotation).apply([0, 0, -1])
+    result = maths.forward_directions(matrix)
+    assert_allclose(result, [forward], atol=1e-12)
+
+
 @given(vectors, rotations, arrays(np.float64, 3, elements=st.floats(0.1, 9)))
 def test_inverse_of_affine(
     translation: np.ndarray, rotation: np.ndarray, scale: np.ndarray

@@ -231,6 +231,17 @@ def test_keeping_the_world_moves_nothing(
     assert_allclose(child.world_matrix, before, atol=1e-9)
 
 
+@given(points, quaternions, scales, points, quaternions)
+def test_world_matrix_can_be_set(
+    place: Any, turn: Any, size: Any, position: Any, rotation: Any
+) -> None:
+    child = Transform()
+    child.set_parent(Transform(place, turn, size))
+    world = compose(position, rotation, (1, 2, 3))
+    child.world_matrix = world
+    assert_allclose(child.world_matrix, world, atol=1e-9)
+
+
 def test_without_keeping_the_world_the_local_matrix_stays() -> None:
     child = Transform((1, 0, 0))
     child.set_parent(Transform((0, 5, 0), scale=2))

@@ -1,0 +1,147 @@
+"""What a scene draws, flattened: one row per primitive of each instance.
+
+Built when models come or go. While things only move, the boxes of the rows
+that moved are all that is computed.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.errors import ModelError, OptionError
+from moka.core.maths import Array, is_mirrored, transform_bounds, union_bounds
+from moka.model.mesh import Primitive
+from moka.model.model import Model
+from moka.scene.forest import Rows
+from moka.scene.transforms import TransformTree, check_affine
+
+__all__ = ["Drawables", "ModelLayout"]
+
+
+class ModelLayout:
+    """The primitives that one scene of a model places, and at which nodes.
+
+    ``primitives`` are those of the meshes in use. Of D draws, ``node`` (D,)
+    is the row in the model's nodes, ``primitive`` (D,) the position in
+    ``primitives`` and ``bounds`` (D, 2, 3) the box in the node's space.
+    ``cameras`` and ``lights`` are pairs of a node's row and what it places.
+    Copies of a model in one scene share all this.
+
+    Raises ModelError if the model has no such scene, or nodes whose matrices
+    are not affine.
+    """
+
+    def __init__(self, model: Model, scene: int | None) -> None:
+        try:
+            check_affine(model.nodes.local, (len(model.nodes),))
+        except OptionError as error:
+            where = model.path or model.name or "a model"
+            raise ModelError(f"{where}: nodes: {error}") from error
+        self.model = model
+        nodes, instances = model.instances(scene)
+        used, mesh = np.unique(instances, return_inverse=True)
+        meshes = [model.meshes[index].primitives for index in used.tolist()]
+        self.primitives: list[Primitive] = [
+            primitive for primitives in meshes for primitive in primitives
+        ]
+        count = np.array([len(primitives) for primitives in meshes], np.intp)
+        first = np.cumsum(count) - count
+        draws = count[mesh]  # Of each instance.
+        before = np.cumsum(draws) - draws
+        within = np.arange(draws.sum()) - np.repeat(before, draws)
+        self.cameras = _pairs(model.camera_instances(scene))
+        self.lights = _pairs(model.light_instances(scene))
+        boxes = [primitive.bounds for primitive in self.primitives]
+        self.node: Rows = np.repeat(nodes.astype(np.intp), draws)
+        self.primitive: Rows = np.repeat(first[mesh], draws) + within
+        self.bounds: Array = np.reshape(
+            np.array(boxes, np.float64), (-1, 2, 3)
+        )[self.primitive]
+
+
+class Drawables:
+    """The draws of all models of a scene, D of them.
+
+    Made of the models' layouts and, for each, the transform rows of its
+    nodes. ``primitives`` holds every primitive once; ``primitive`` (D,) is
+    the position in it, ``row`` (D,) the row of the transform, ``owner`` (D,)
+    the position of the model. ``local_bounds`` and ``world_bounds`` are
+    float64 (D, 2, 3), least and greatest corner; ``mirrored`` (D,) tells
+    where the world matrix turns front faces clockwise. The last two are as
+    of the last :meth:`refresh`.
+    """
+
+    def __init__(
+        self,
+        layouts: Sequence[ModelLayout] = (),
+        node_rows: Sequence[Rows] = (),
+    ) -> None:
+        self.primitives, primitive_of = _joined(layouts)
+        none = np.empty(0, np.intp)
+        placed = list(zip(layouts, node_rows, strict=True))
+        self.primitive: Rows = np.concatenate(
+            [none, *(primitive_of[id(layout)] for layout in layouts)]
+        )
+        self.row: Rows = np.concatenate(
+            [none, *(rows[layout.node] for layout, rows in placed)]
+        )
+        self.owner: Rows = np.repeat(
+            np.arange(len(layouts)), [len(layout.node) for layout in layouts]
+        )
+        self.local_bounds: Array = np.concatenate(
+            [np.empty((0, 2, 3)), *(layout.bounds for layout in layouts)]
+        )
+        self.world_bounds: Array = np.zeros_like(self.local_bounds)
+        self.mirrored: NDArray[np.bool_] = np.zeros(len(self.row), np.bool_)
+        self._version = -1  # Of the transforms; none is that old.
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def refresh(self, tree: TransformTree) -> None:
+        """Follow what moved in ``tree`` since the last call."""
+        if self._version == tree.version:
+            return
+        touched = np.zeros(len(tree.world), np.bool_)
+        touched[tree.changed_since(self._version)] = True
+        self._version = tree.version
+        draws = np.flatnonzero(touched[self.row])
+        world = tree.world[self.row[draws]]
+        # What overflows is not finite, and culling keeps that.
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.world_bounds[draws] = transform_bounds(
+                world, self.local_bounds[draws]
+            )
+            self.mirrored[draws] = is_mirrored(world)
+
+    def bounds(self, shown: NDArray[np.bool_]) -> Array | None:
+        """The world box (2, 3) of the draws ``shown`` (D,), None of none."""
+        return union_bounds(self.world_bounds[shown]) if shown.any() else None
+
+
+def _pairs(
+    instances: tuple[NDArray[np.int32], NDArray[np.int32]],
+) -> list[tuple[int, int]]:
+    """Nodes and what they place as pairs of Python's numbers."""
+    nodes, placed = instances
+    return list(zip(nodes.tolist(), placed.tolist(), strict=True))
+
+
+def _joined(
+    layouts: Sequence[ModelLayout],
+) -> tuple[list[Primitive], dict[int, Rows]]:
+    """Every primitive once; for each layout's id, where those it draws are."""
+    position_of: dict[int, int] = {}
+    primitives: list[Primitive] = []
+    drawn: dict[int, Rows] = {}
+    for layout in layouts:
+        if id(layout) in drawn:
+            continue
+        for primitive in layout.primitives:
+            if id(primitive) not in position_of:
+                position_of[id(primitive)] = len(primitives)
+                primitives.append(primitive)
+        positions = [position_of[id(each)] for each in layout.primitives]
+        drawn[id(layout)] = np.array(positions, np.intp)[layout.primitive]
+    return primitives, drawn

@@ -1,0 +1,226 @@
+"""A scene: models, lights and an environment, each in its place.
+
+Handles for users (:class:`SceneModel`, :class:`Light`, :class:`Transform`)
+stand for rows of arrays, and the renderer reads the arrays. After
+:meth:`Scene.update` these agree with the handles; a version number tells for
+each kind of change whether there was one.
+"""
+
+from typing import Any
+from weakref import WeakValueDictionary
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from moka.core.errors import OptionError
+from moka.core.maths import Array
+from moka.model.lights import PunctualLight
+from moka.model.model import Model
+from moka.scene.background import Background, parse_background
+from moka.scene.camera import Camera
+from moka.scene.culling import boxes_in_frustum
+from moka.scene.drawables import Drawables, ModelLayout
+from moka.scene.lights import Light, pack_lights
+from moka.scene.scene_model import SceneModel
+from moka.scene.transform import Transform
+from moka.scene.transforms import TransformTree
+
+__all__ = ["Scene"]
+
+
+class Scene:
+    """What there is to render.
+
+    ``environment`` is an :class:`moka.Environment` or None for darkness,
+    turned by ``environment_rotation`` radians about +Y (counter-clockwise
+    seen from above) and multiplied by ``environment_intensity``.
+
+    For the renderer, as of the last :meth:`update`: ``transforms`` with its
+    own ``version``, ``drawables`` which are new when ``structure_version``
+    is, and ``shown`` (D,), which draws belong to visible models, new when
+    ``visibility_version`` is.
+    """
+
+    def __init__(self) -> None:
+        self.environment: Any = None
+        self.environment_rotation = 0.0
+        self.environment_intensity = 1.0
+        self.transforms = TransformTree(fixed=True)
+        self.drawables = Drawables()
+        self.shown: NDArray[np.bool_] = np.zeros(0, np.bool_)
+        self.structure_version = 0
+        self.visibility_version = 0
+        self._background: Background = "environment"
+        self._models: dict[SceneModel, None] = {}  # A set that keeps order.
+        self._model_rows: set[int] = set()  # Transforms that move models.
+        self._lights: list[Light] = []
+        # Layouts live as long as a copy of their model, whose id is the key.
+        self._layouts: WeakValueDictionary[tuple[int, int], ModelLayout] = (
+            WeakValueDictionary()
+        )
+        self._built = (0, 0)
+
+    @property
+    def background(self) -> Background:
+        """What is behind the models.
+
+        ``environment``, ``transparent`` or a linear Rec.709 colour; takes
+        also ``#rrggbb``. Raises OptionError for anything else.
+        """
+        return self._background
+
+    @background.setter
+    def background(self, value: Any) -> None:
+        self._background = parse_background(value)
+
+    @property
+    def models(self) -> list[SceneModel]:
+        """The models in the order in which they were added."""
+        return list(self._models)
+
+    @property
+    def cameras(self) -> list[Camera]:
+        """The cameras of all models."""
+        return [camera for model in self.models for camera in model.cameras]
+
+    @property
+    def lights(self) -> list[Light]:
+        """The lights of all models, then those that were added."""
+        of_models = [light for model in self.models for light in model.lights]
+        return of_models + self._lights
+
+    def add(
+        self,
+        model: Model,
+        transform: Transform | ArrayLike | None = None,
+        *,
+        scene: int | None = None,
+    ) -> SceneModel:
+        """Put a model into the scene; the same one as often as needed.
+
+        ``transform`` becomes that of the whole model: a Transform, which
+        joins this scene, or an affine (4, 4) matrix. ``scene`` is which
+        scene of the file, by default the one that the file names. Arrays of
+        the model are read now; later changes to it go unseen.
+
+        Raises OptionError for a transform that belongs to another scene or
+        already moves a model, ModelError for a scene that is not there.
+        """
+        number = model.default_scene if scene is None else scene
+        layout = self._layouts.get((id(model), number))
+        if layout is None:
+            layout = ModelLayout(model, number)
+            self._layouts[id(model), number] = layout
+        place = self._joined(transform)
+        if place.row in self._model_rows:
+            raise OptionError(
+                "scene: the transform already belongs to a model; give this "
+                "one its own and make that the parent"
+            )
+        added = SceneModel(self, layout, place)
+        self._models[added] = None
+        self._model_rows.update(added.rows.tolist(), [place.row])
+        self.structure_version += 1
+        return added
+
+    def add_light(
+        self,
+        description: PunctualLight,
+        transform: Transform | ArrayLike | None = None,
+    ) -> Light:
+        """Put a light into the scene, which shines along -Z.
+
+        Raises OptionError for a transform that belongs to another scene.
+        """
+        light = Light(description, self._joined(transform))
+        self._lights.append(light)
+        return light
+
+    def remove(self, item: SceneModel | Light) -> None:
+        """Take a model, or a light that was added to the scene, out of it.
+
+        Its transforms cannot be used any more, unless other things use them;
+        lights at those of a model go with it. Raises OptionError if the item
+        is not here.
+        """
+        if isinstance(item, SceneModel) and item in self._models:
+            del self._models[item]
+            self.structure_version += 1
+            rows = np.append(item.rows, item.transform.row)
+            self._model_rows.difference_update(rows.tolist())
+            self._lights = [
+                light
+                for light in self._lights
+                if light.transform.row not in rows
+            ]
+        elif isinstance(item, Light) and item in self._lights:
+            self._lights.remove(item)
+            row = item.transform.row
+            shared = any(light.transform.row == row for light in self._lights)
+            rows = np.array([row], np.intp)
+            if shared or row in self._model_rows:
+                return
+        else:
+            raise OptionError(f"scene: {item!r} was not added to this scene")
+        self.transforms.remove(rows)
+
+    def update(self) -> None:
+        """Bring all arrays up to date; costs nothing if nothing changed."""
+        self.transforms.update()
+        models = self._models
+        if self._built[0] != self.structure_version:
+            self.drawables = Drawables(
+                [model.layout for model in models],
+                [model.rows for model in models],
+            )
+        self.drawables.refresh(self.transforms)
+        now = self.structure_version, self.visibility_version
+        if self._built != now:
+            visible = np.array([model.visible for model in models], np.bool_)
+            self.shown = visible[self.drawables.owner]
+            self._built = now
+
+    def visible(self, camera: Camera, aspect: float) -> NDArray[np.bool_]:
+        """Which draws (D,) a camera may see in a picture of ``aspect``.
+
+        As of the last :meth:`update`.
+        """
+        planes = camera.frustum_planes(aspect)
+        return self.shown & boxes_in_frustum(
+            planes, self.drawables.world_bounds
+        )
+
+    def bounds(self) -> Array | None:
+        """The world box (2, 3) of the visible models; None without any."""
+        self.update()
+        return self.drawables.bounds(self.shown)
+
+    def light_rows(self, origin: ArrayLike = (0, 0, 0)) -> NDArray[np.void]:
+        """Rows of :data:`moka.scene.lights.LIGHT` of all that shine.
+
+        Positions are relative to ``origin`` (3,). As of the last
+        :meth:`update`.
+        """
+        shining = [
+            light
+            for model in self._models
+            if model.visible
+            for light in model.lights
+            if light.visible
+        ]
+        shining += [light for light in self._lights if light.visible]
+        rows = [light.transform.row for light in shining]
+        return pack_lights(
+            [light.description for light in shining],
+            self.transforms.world[rows] if rows else np.empty((0, 4, 4)),
+            origin,
+        )
+
+    def _joined(self, transform: Transform | ArrayLike | None) -> Transform:
+        """A transform of this scene for one that is given."""
+        if not isinstance(transform, Transform):
+            row = self.transforms.add(transform)
+            return Transform.of_row(self.transforms, row)
+        if transform.tree is not self.transforms:
+            self.transforms.absorb(transform.tree)
+        return transform

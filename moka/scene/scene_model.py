@@ -1,0 +1,98 @@
+"""One copy of a model in a scene."""
+
+from typing import TYPE_CHECKING
+
+from moka.core.errors import OptionError
+from moka.model.model import Model
+from moka.scene.camera import Camera
+from moka.scene.drawables import ModelLayout
+from moka.scene.forest import Rows
+from moka.scene.lights import Light
+from moka.scene.transform import Transform
+
+if TYPE_CHECKING:
+    from moka.scene.scene import Scene
+
+__all__ = ["SceneModel"]
+
+
+class SceneModel:
+    """A model, its place in the world, and its nodes there.
+
+    ``transform`` moves the whole; ``rows`` (N,) are the transform rows of
+    the model's nodes; ``cameras`` and ``lights`` are those that its nodes
+    place. Made by :meth:`moka.Scene.add`.
+    """
+
+    def __init__(
+        self,
+        scene: "Scene",
+        layout: ModelLayout,
+        transform: Transform,
+    ) -> None:
+        model = layout.model
+        self.model: Model = model
+        self.layout = layout
+        self.transform = transform
+        self.rows: Rows = transform.tree.add_many(
+            model.nodes.local, model.nodes.parents, transform.row
+        )
+        self.cameras = [
+            self._camera(node, camera) for node, camera in layout.cameras
+        ]
+        self.lights = [
+            Light(model.lights[light], self.node(node))
+            for node, light in layout.lights
+        ]
+        self._scene = scene
+        self._visible = True
+
+    def __repr__(self) -> str:
+        return f"<SceneModel {self.model.name!r}: {self.transform!r}>"
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is drawn and its lights shine."""
+        return self._visible
+
+    @visible.setter
+    def visible(self, value: bool) -> None:
+        if value != self._visible:
+            self._visible = value
+            self._scene.visibility_version += 1
+
+    def node(self, node: int | str) -> Transform:
+        """The transform of a node, by its row in ``model.nodes`` or name.
+
+        Raises OptionError if there is none, or several of that name.
+        """
+        names = self.model.nodes.names
+        if isinstance(node, str):
+            found = names.count(node)
+            if found != 1:
+                raise OptionError(
+                    f"scene: {found or 'no'} nodes of the model are named "
+                    f"{node!r}"
+                )
+            node = names.index(node)
+        if not 0 <= node < len(names):
+            raise OptionError(
+                f"scene: there is no node {node}, the model has {len(names)}"
+            )
+        return Transform.of_row(self.transform.tree, int(self.rows[node]))
+
+    def remove(self) -> None:
+        """Take the model out of its scene.
+
+        Its transforms cannot be used any more; what other things were put
+        below them stays where it is in the world.
+        """
+        self._scene.remove(self)
+
+    def _camera(self, node: int, number: int) -> Camera:
+        """A camera of the file where a node places it."""
+        camera = Camera.from_description(
+            self.model.cameras[number], self.node(node)
+        )
+        camera.name = camera.name or self.model.nodes.names[node]
+        return camera
