@@ -135,14 +135,15 @@ def execute(arguments: argparse.Namespace) -> int:
     """Render and write every output, or write none and raise MokaError."""
     outputs = arguments.output or [Path("moka.png")]
     _check_outputs(outputs, arguments.stats)
-    request = _request(arguments)
+    request = _request(arguments, outputs)
 
+    from moka.app.outputs import write_outputs
     from moka.app.render import render_request
     from moka.core.statistics import Statistics, write_statistics
 
     statistics = Statistics()
     suffixes = {path.suffix.lower() for path in outputs}
-    image = render_request(
+    picture = render_request(
         request,
         statistics,
         want_pixels=".exr" in suffixes,
@@ -150,18 +151,15 @@ def execute(arguments: argparse.Namespace) -> int:
         debug=arguments.debug,
     )
     with statistics.stage("encode"):
-        image.save_all(
-            outputs,
-            tone_map=request.settings.tone_map,
-            exposure=request.settings.exposure,
-            half=arguments.half,
-        )
+        write_outputs(picture, outputs, half=arguments.half)
     if arguments.stats:
         write_statistics(statistics, arguments.stats)
     return 0
 
 
-def _request(arguments: argparse.Namespace) -> "RenderRequest":
+def _request(
+    arguments: argparse.Namespace, outputs: list[Path]
+) -> "RenderRequest":
     from moka.app.render import RenderRequest
     from moka.renderer.settings import RenderSettings
 
@@ -182,6 +180,7 @@ def _request(arguments: argparse.Namespace) -> "RenderRequest":
             brdf=arguments.brdf,
             diffuse=arguments.diffuse,
             multiscatter=arguments.multiscatter == "on",
+            float_output=any(path.suffix.lower() == ".exr" for path in outputs),
         ),
         backend=arguments.backend,
     )

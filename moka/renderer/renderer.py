@@ -169,6 +169,11 @@ class Renderer:
         return self._read(commands, self._current_targets.resolved, "f4")
 
     @property
+    def has_drawn(self) -> bool:
+        """Whether there is a picture to read."""
+        return self._targets is not None
+
+    @property
     def _current_targets(self) -> Targets:
         if self._targets is None:
             raise DeviceError("renderer: nothing has been drawn to read")

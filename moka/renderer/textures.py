@@ -113,7 +113,7 @@ class TexturePool:
         decoded: "Future[NDArray[Any]]",
         where: str,
     ) -> Handle:
-        from moka.core.decode import reduce_levels
+        from moka.core.mip_levels import reduce_levels
 
         # Decoding was submitted before, so a worker is on it or done.
         texels = decoded.result()

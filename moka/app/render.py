@@ -1,0 +1,278 @@
+"""One picture, from a file to pixels: the work behind ``moka render``.
+
+Reading the environment and decoding images run in worker threads while the
+render thread makes the context and compiles; they meet at the first frame.
+"""
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.errors import OptionError
+from moka.core.image import Image
+from moka.core.statistics import Statistics
+from moka.renderer.settings import RenderSettings
+
+if TYPE_CHECKING:
+    from moka.graphics.device import GraphicsDevice
+    from moka.lighting.environment import Environment
+    from moka.model.model import Model
+    from moka.scene.camera import Camera
+    from moka.scene.scene import Scene
+
+__all__ = ["Picture", "RenderRequest", "render", "render_request"]
+
+LARGEST_SIDE = 16384
+
+
+@dataclass(frozen=True, slots=True)
+class RenderRequest:
+    """All that decides a picture; the options of ``moka render``.
+
+    ``source`` is a path, the bytes of a file, a pygltflib document, a
+    :class:`moka.Model`, or None for the built-in scene. ``environment`` is a
+    path, a built-in name or a :class:`moka.Environment`.
+    ``environment_rotation`` is in radians about +Y. ``camera`` is what the
+    command line's ``--camera`` takes, or a :class:`moka.Camera`.
+    """
+
+    source: Any = None
+    environment: Any = "studio"
+    environment_rotation: float = 0.0
+    environment_intensity: float = 1.0
+    background: Any = "environment"
+    camera: Any = None
+    size: tuple[int, int] = (1280, 720)
+    settings: RenderSettings = field(default_factory=RenderSettings)
+    backend: str = "auto"
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """What came back from the GPU, top row first; None if not asked for.
+
+    ``pixels`` is float32 (H, W, 4) linear radiance, premultiplied;
+    ``display`` uint8 (H, W, 4), tone mapped and sRGB-encoded.
+    """
+
+    pixels: NDArray[np.float32] | None
+    display: NDArray[np.uint8] | None
+
+
+def render(
+    source: Any = None,
+    *,
+    environment: Any = "studio",
+    size: tuple[int, int] = (1280, 720),
+    camera: Any = None,
+    background: Any = "environment",
+    environment_rotation: float = 0.0,
+    environment_intensity: float = 1.0,
+    exposure: float = 0.0,
+    tone_map: str = "neutral",
+    samples: int = 4,
+    brdf: str = "gltf",
+    diffuse: str = "lambert",
+    multiscatter: bool = True,
+    backend: str = "auto",
+) -> Image:
+    """Render one picture headless.
+
+    ``source`` is a .gltf or .glb path, the bytes of one, a pygltflib
+    document, a :class:`moka.Model`, or None for the built-in demo scene.
+    ``environment`` is an equirectangular .hdr or .exr path, ``studio``,
+    ``sky``, ``furnace``, ``none`` or a :class:`moka.Environment`, turned by
+    ``environment_rotation`` radians counter-clockwise about +Y and its
+    radiance multiplied by ``environment_intensity``. ``camera`` is a name or
+    index of a camera in the file, ``orbit:YAW,PITCH[,DISTANCE]`` in degrees
+    or a :class:`moka.Camera`; by default the file's first camera, else an
+    orbit that frames the model. ``background`` is ``environment``,
+    ``transparent`` or ``#rrggbb``. ``exposure`` (EV) and ``tone_map`` are
+    how the image shows itself; its pixels are neither exposed nor tone
+    mapped. ``brdf`` is ``gltf`` (glTF 2.0 appendix B), ``karis`` or
+    ``blinn-phong``, ``diffuse`` ``lambert``, ``oren-nayar`` or ``burley``;
+    ``multiscatter`` compensates the energy that single scattering loses
+    (Turquin 2019).
+
+    Returns an :class:`moka.Image` of linear Rec.709 radiance, float32
+    (height, width, 4), top row first.
+
+    Raises ModelError, EnvironmentMapError, ImageFileError, OptionError or
+    ContextError, each with one line that names the file and the fault.
+    """
+    settings = RenderSettings(
+        exposure=exposure,
+        tone_map=tone_map,
+        samples=samples,
+        brdf=brdf,
+        diffuse=diffuse,
+        multiscatter=multiscatter,
+        float_output=True,
+    )
+    picture = render_request(
+        RenderRequest(
+            source,
+            environment,
+            environment_rotation,
+            environment_intensity,
+            background,
+            camera,
+            size,
+            settings,
+            backend,
+        ),
+        Statistics(),
+        want_pixels=True,
+        want_display=True,
+    )
+    assert picture.pixels is not None
+    return Image(
+        picture.pixels,
+        tone_map=tone_map,
+        exposure=exposure,
+        display=picture.display,
+    )
+
+
+def render_request(
+    request: RenderRequest,
+    statistics: Statistics,
+    *,
+    want_pixels: bool,
+    want_display: bool,
+    debug: bool = False,
+) -> Picture:
+    """Make the picture of ``request``; see :func:`render` for its errors."""
+    _check_size(request.size)
+    with ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader:
+        environment = reader.submit(_load_environment, request, statistics)
+        from moka.graphics.device import GraphicsDevice
+
+        with GraphicsDevice.open(request.backend, debug=debug) as device:
+            return _render_with(
+                device,
+                request,
+                environment,
+                statistics,
+                want_pixels=want_pixels,
+                want_display=want_display,
+            )
+
+
+def _render_with(
+    device: "GraphicsDevice",
+    request: RenderRequest,
+    environment: "Future[Environment | None]",
+    statistics: Statistics,
+    *,
+    want_pixels: bool,
+    want_display: bool,
+) -> Picture:
+    from moka.commands.command_list import CommandList
+    from moka.renderer.renderer import Renderer
+    from moka.scene.scene import Scene
+
+    with statistics.stage("parse"):
+        scene = Scene()
+        scene.background = request.background
+        scene.environment_rotation = request.environment_rotation
+        scene.environment_intensity = request.environment_intensity
+        scene.add(_load_model(request.source))
+        camera = _choose_camera(request, scene)
+    renderer = Renderer(
+        device, request.size, request.settings, statistics=statistics
+    )
+    try:
+        renderer.begin(scene)
+        with statistics.stage("context"):
+            info = device.info
+        scene.environment = environment.result()
+        commands = CommandList()
+        renderer.draw(scene, camera, commands)
+        display = renderer.read_display(commands) if want_display else None
+        radiance = renderer.read_radiance(commands) if want_pixels else None
+        with statistics.stage("frame"):
+            counters = device.submit(commands).wait()
+    finally:
+        renderer.close()
+    statistics.gl.update(
+        backend=info.kind,
+        vendor=info.vendor,
+        renderer=info.renderer,
+        version=info.version,
+    )
+    for name in counters.__slots__:
+        statistics.set_count(name, getattr(counters, name))
+    pixels = None
+    if radiance is not None:
+        assert radiance.data is not None
+        pixels = _over_background(radiance.data[::-1], scene.background)
+    return Picture(
+        pixels,
+        None if display is None or display.data is None else display.data[::-1],
+    )
+
+
+def _load_model(source: Any) -> "Model":
+    from moka.model.model import Model
+
+    if isinstance(source, Model):
+        return source
+    if source is None:
+        from moka.model.demo import demo_model
+
+        return demo_model()
+    from moka.model.load import load_model
+
+    return load_model(source)
+
+
+def _load_environment(
+    request: RenderRequest, statistics: Statistics
+) -> "Environment | None":
+    from moka.lighting.environment import Environment, load_environment
+
+    source = request.environment
+    if source is None or isinstance(source, Environment):
+        return source
+    with statistics.stage("decode"):
+        return load_environment(source)
+
+
+def _choose_camera(request: RenderRequest, scene: "Scene") -> "Camera":
+    from moka.scene.camera import Camera
+    from moka.scene.camera_choice import choose_camera, parse_camera
+
+    choice = request.camera
+    if isinstance(choice, Camera):
+        return choice
+    if isinstance(choice, str):
+        choice = parse_camera(choice)
+    width, height = request.size
+    return choose_camera(scene, choice, width / height)
+
+
+def _over_background(
+    pixels: NDArray[np.float32], background: Any
+) -> NDArray[np.float32]:
+    """Radiance over a background colour, as the display pass has it."""
+    if isinstance(background, str):
+        return np.ascontiguousarray(pixels)
+    under = np.append(np.asarray(background, np.float32), np.float32(1))
+    return pixels + under * (1 - pixels[:, :, 3:])
+
+
+def _check_size(size: tuple[int, int]) -> None:
+    if (
+        not all(
+            isinstance(side, int | np.integer) and 1 <= side <= LARGEST_SIDE
+            for side in size
+        )
+        or len(size) != 2
+    ):
+        raise OptionError(
+            f"size: {size!r} is not (width, height) from 1 to {LARGEST_SIDE}"
+        )
