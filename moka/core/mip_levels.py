@@ -1,0 +1,202 @@
+"""Mip levels of textures, reduced on the CPU in worker threads.
+
+A driver in software needs longer to generate them than these few passes
+over the texels take here, and it does not promise linear light. Between
+levels texels are 16-bit linear values, so that eleven roundings do not add
+up; all heavy steps are NumPy calls that release the interpreter's lock.
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.colour import decode_srgb, encode_srgb8
+
+__all__ = ["reduce_levels"]
+
+#: Values worked on at a time, so that temporaries stay in the cache.
+_BLOCK = 1 << 16
+
+
+def reduce_levels(
+    texels: NDArray[Any], *, srgb: bool = False, normalise: bool = False
+) -> list[NDArray[Any]]:
+    """The whole chain of mip levels, from ``texels`` itself down to 1 x 1.
+
+    ``texels`` is uint8 or uint16 of shape (H, W, C), and so are the levels,
+    each half as large as the one before, rounded down. Every texel is the
+    mean of the area it covers: 2 x 2 texels, or up to 3 x 3 with weights
+    where a size is odd (Guthe and Heckbert, Non-Power-of-Two Mipmapping,
+    NVIDIA 2005). ``srgb`` texels, of 8 bits, are averaged in linear light,
+    a last channel of two or four always as it is. ``normalise`` stretches
+    the vectors of a normal map back to unit length.
+    """
+    if srgb and texels.dtype != np.uint8:
+        raise ValueError("sRGB-encoded texels have 8 bits")
+    levels = [texels]
+    linear: NDArray[np.uint16] | None = None
+    while max(levels[-1].shape[:2]) > 1:
+        if linear is not None:
+            linear = _halve(linear)
+        elif texels.dtype == np.uint8 and not _has_odd_size(texels):
+            linear = _decode_and_halve(texels, srgb)
+        else:
+            linear = _halve(_decode(texels, srgb))
+        encode = _encode_normals if normalise else _encode
+        levels.append(encode(linear, texels.dtype, srgb))
+    return levels
+
+
+def _has_odd_size(texels: NDArray[Any]) -> bool:
+    height, width, _ = texels.shape
+    return bool(height % 2 or width % 2)
+
+
+def _has_alpha(texels: NDArray[Any]) -> bool:
+    return texels.shape[2] in (2, 4)
+
+
+def _decode(texels: NDArray[Any], srgb: bool) -> NDArray[np.uint16]:
+    """Texels as 16-bit linear values.
+
+    8-bit data become 256 times as large, decoded colours end at 65535.
+    """
+    if texels.dtype == np.uint16:
+        return texels
+    scaled: NDArray[np.uint16] = texels.astype(np.uint16)
+    scaled <<= 8
+    if srgb:
+        colour = slice(-1 if _has_alpha(texels) else None)
+        table = np.rint(65535.0 * decode_srgb(np.arange(256) / 255.0))
+        decoded = table.astype(np.uint16).take(texels[:, :, colour])
+        scaled[:, :, colour] = decoded
+    return scaled
+
+
+def _decode_and_halve(
+    texels: NDArray[np.uint8], srgb: bool
+) -> NDArray[np.uint16]:
+    """The first level of 8-bit texels of even sizes, as 16-bit values.
+
+    Three quarters of all the work is here. Two texels above one another
+    index a table of the sums of their decoded values, which spares half of
+    the look-ups.
+    """
+    height, width, channels = texels.shape
+    linear = np.empty((height // 2, width // 2, channels), np.uint16)
+    step = max(1, _BLOCK // (width * channels))
+    for start in range(0, height // 2, step):
+        rows = texels[2 * start : 2 * (start + step)]
+        upper, lower = rows[0::2], rows[1::2]
+        if srgb:
+            pairs = upper.astype(np.intp)
+            pairs <<= 8
+            pairs |= lower
+            sums = _pair_table().take(pairs)
+        if not srgb or _has_alpha(texels):
+            plain = slice(-1 if srgb else None, None)
+            data = np.add(
+                upper[:, :, plain], lower[:, :, plain], dtype=np.uint16
+            )
+            data <<= 6
+            if srgb:
+                sums[:, :, plain] = data
+            else:
+                sums = data
+        for channel in range(channels):
+            np.add(
+                sums[:, 0::2, channel],
+                sums[:, 1::2, channel],
+                out=linear[start : start + step, :, channel],
+            )
+    return linear
+
+
+@cache
+def _pair_table() -> NDArray[np.uint16]:
+    """A quarter of the sum of two decoded sRGB codes, at upper << 8 | lower.
+
+    Two of them add up to a 16-bit value, also those of four white texels.
+    """
+    linear = decode_srgb(np.arange(256) / 255.0)
+    sums = np.rint(65535.0 / 4.0 * (linear[:, np.newaxis] + linear))
+    return np.minimum(sums, 32767.0).astype(np.uint16).reshape(-1)
+
+
+def _halve(linear: NDArray[np.uint16]) -> NDArray[np.uint16]:
+    """The next level of 16-bit linear values of any size."""
+    if _has_odd_size(linear):
+        exact = _halve_rows(linear.astype(np.float32))
+        exact = _halve_rows(exact.swapaxes(0, 1)).swapaxes(0, 1)
+        return np.rint(exact).astype(np.uint16, order="C")
+    height, width, channels = linear.shape
+    halved: NDArray[np.uint16] = np.empty(
+        (height // 2, width // 2, channels), np.uint16
+    )
+    step = max(1, _BLOCK // (width * channels))
+    for start in range(0, height // 2, step):
+        rows = linear[2 * start : 2 * (start + step)]
+        sums = np.add(rows[0::2], rows[1::2], dtype=np.uint32)
+        for channel in range(channels):
+            total = sums[:, 0::2, channel] + sums[:, 1::2, channel]
+            total += 2
+            total >>= 2
+            halved[start : start + step, :, channel] = total
+    return halved
+
+
+def _halve_rows(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Half as many rows, weighted by how much of each lies in a new one."""
+    height = len(values)
+    half = height // 2
+    if height == 1:
+        return values
+    if height % 2 == 0:
+        return (values[0::2] + values[1::2]) * np.float32(0.5)
+    # A new row covers 2 + 1 / half of the old ones.
+    index = np.arange(half, dtype=np.float32).reshape(half, 1, 1)
+    total: NDArray[np.float32] = (
+        (half - index) * values[0:-1:2]
+        + half * values[1::2]
+        + (index + 1) * values[2::2]
+    )
+    return total / np.float32(height)
+
+
+def _encode(
+    linear: NDArray[np.uint16], dtype: np.dtype[Any], srgb: bool
+) -> NDArray[Any]:
+    if dtype == np.uint16:
+        return linear
+    if not srgb:
+        return ((linear + np.uint16(128)) >> 8).astype(np.uint8)
+    codes = _encoding_table().take(linear)
+    if _has_alpha(linear):
+        codes[:, :, -1] = (linear[:, :, -1] + np.uint16(128)) >> 8
+    return codes
+
+
+@cache
+def _encoding_table() -> NDArray[np.uint8]:
+    """The 8-bit sRGB code of every 16-bit linear value."""
+    return encode_srgb8(np.arange(65536) / 65535.0)
+
+
+def _encode_normals(
+    linear: NDArray[np.uint16], dtype: np.dtype[Any], srgb: bool
+) -> NDArray[Any]:
+    """Texels whose first three channels are unit vectors again."""
+    texels = _encode(linear, dtype, srgb).copy()
+    white = np.iinfo(dtype).max
+    scale = 65535.0 if dtype == np.uint16 else 256.0 * white
+    vectors = linear[:, :, :3] * np.float32(2.0 / scale) - np.float32(1)
+    squared = vectors**2
+    lengths = np.sqrt(squared[:, :, 0] + squared[:, :, 1] + squared[:, :, 2])
+    # Opposite normals may cancel; then the surface counts as flat.
+    vectors[lengths < 1e-3] = (0.0, 0.0, 1.0)
+    lengths[lengths < 1e-3] = 1.0
+    vectors /= lengths[:, :, np.newaxis]
+    texels[:, :, :3] = np.rint((vectors + 1) * np.float32(white / 2.0))
+    return texels
