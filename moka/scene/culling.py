@@ -11,6 +11,8 @@ __all__ = ["boxes_in_frustum", "view_depths"]
 # only left out if it is outside by more.
 _ROUNDING = 1e-12
 
+_FARTHEST = float(np.finfo(np.float32).max)
+
 
 def boxes_in_frustum(planes: ArrayLike, bounds: ArrayLike) -> NDArray[np.bool_]:
     """Which boxes (N, 2, 3) may reach into the frustum of planes (P, 4).
@@ -38,12 +40,12 @@ def boxes_in_frustum(planes: ArrayLike, bounds: ArrayLike) -> NDArray[np.bool_]:
 def view_depths(view_matrix: ArrayLike, bounds: ArrayLike) -> Array:
     """Distances (N,) of box centres along the view axis, in metres.
 
-    Zero for centres behind the camera and for boxes that are not finite,
-    since a sort key holds no others.
+    Zero for centres behind the camera and for boxes that are not finite, at
+    most what float32 holds, since a sort key takes no others.
     """
     bounds = np.asarray(bounds, np.float64)
     row = np.asarray(view_matrix, np.float64)[2]
     with np.errstate(over="ignore", invalid="ignore"):
         centre = 0.5 * (bounds[:, 0] + bounds[:, 1])
         depth = -(centre @ row[:3] + row[3])
-    return np.where(np.isfinite(depth), np.maximum(depth, 0), 0)
+    return np.where(np.isfinite(depth), np.clip(depth, 0, _FARTHEST), 0)

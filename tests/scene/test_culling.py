@@ -114,3 +114,8 @@ def test_depth_is_along_the_axis_and_not_the_distance() -> None:
 def test_depth_of_what_is_not_finite_is_zero() -> None:
     boxes = [[[-math.inf] * 3, [math.inf] * 3], [[math.nan] * 3] * 2]
     assert view_depths(np.eye(4), boxes).tolist() == [0, 0]
+
+
+def test_depth_fits_a_float32() -> None:
+    depth = view_depths(np.eye(4), [cube(0, 0, -1e200)])
+    assert np.isfinite(depth.astype(np.float32)).all()
