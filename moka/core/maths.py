@@ -218,10 +218,10 @@ def forward_directions(matrices: ArrayLike) -> Array:
     """
     linear = np.asarray(matrices, np.float64)[..., :3, :3]
     back = normalise(linear[..., 2])
-    flat = ~back.any(axis=-1)
+    flat = ~back.any(axis=-1, keepdims=True)
     if flat.any():
         rotation = quaternion_to_matrix(rotation_and_stretch(linear)[0])
-        back = np.where(flat[..., None], rotation[..., 2], back)
+        back = np.where(flat, rotation[..., 2], back)
     return -back
 
 
