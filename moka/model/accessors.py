@@ -51,6 +51,7 @@ class AccessorReader:
         self._source = source
         self._arrays: dict[int, NDArray[Any]] = {}
         self._floats: dict[int, NDArray[np.float32]] = {}
+        self._indices: dict[int, NDArray[np.uint32]] = {}
         self._unbacked_elements = 0
 
     def array(self, index: int) -> NDArray[Any]:
@@ -76,6 +77,28 @@ class AccessorReader:
         if floats is None:
             floats = self._floats[index] = self._convert(index)
         return floats
+
+    def indices(self, index: int) -> NDArray[np.uint32]:
+        """The elements (N,) of an accessor of vertex indices, as uint32.
+
+        Raises ModelError as :meth:`array`, and unless they are plain
+        unsigned scalars.
+        """
+        indices = self._indices.get(index)
+        if indices is None:
+            array = self.array(index)
+            accessor = self._source.document.accessors[index]
+            if (
+                accessor.type != "SCALAR"
+                or array.dtype.kind != "u"
+                or accessor.normalized
+            ):
+                raise self._source.error(
+                    f"accessors[{index}]",
+                    "holds indices, which must be plain unsigned scalars",
+                )
+            indices = self._indices[index] = array.astype(np.uint32, copy=False)
+        return indices
 
     def _convert(self, index: int) -> NDArray[np.float32]:
         array = self.array(index)

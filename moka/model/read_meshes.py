@@ -3,8 +3,6 @@
 Source: glTF 2.0 specification, section 3.7.2 (meshes).
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +17,6 @@ __all__ = ["read_meshes"]
 
 _TYPES = {2: ("VEC2",), 3: ("VEC3",), 4: ("VEC4",)}
 _UNSIGNED_INT = 5125
-_INDEX_TYPES = (5121, 5123, _UNSIGNED_INT)
 
 
 def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
@@ -66,9 +63,8 @@ def _read_primitive(
         attributes.pop("TANGENT", None)
     indices = None
     if primitive.indices is not None:
-        indices = _read_indices(
-            source, accessors, f"{path}.indices", primitive.indices
-        )
+        _accessor(source, f"{path}.indices", primitive.indices)
+        indices = accessors.indices(primitive.indices)
     material = None
     if primitive.material is not None:
         source.check_index(
@@ -111,21 +107,6 @@ def _read_attribute(
         opaque[:, :3] = array
         return opaque
     return array
-
-
-def _read_indices(
-    source: GltfSource, accessors: AccessorReader, path: str, index: int
-) -> NDArray[Any]:
-    accessor = _accessor(source, path, index)
-    if (
-        accessor.type != "SCALAR"
-        or accessor.component_type not in _INDEX_TYPES
-        or accessor.normalized
-    ):
-        raise source.error(
-            path, f"accessors[{index}] must hold plain unsigned scalars"
-        )
-    return accessors.array(index)
 
 
 def _accessor(source: GltfSource, path: str, index: int) -> schema.Accessor:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from moka.core.errors import ModelError
@@ -97,6 +97,7 @@ def layouts(draw: st.DrawFn) -> tuple[Document, bytes]:
     return document, binary
 
 
+@settings(deadline=None)
 @given(layouts())
 def test_reads_what_the_oracle_unpacks(file: tuple[Document, bytes]) -> None:
     document, binary = file
@@ -123,6 +124,7 @@ def test_reads_what_the_oracle_unpacks(file: tuple[Document, bytes]) -> None:
     np.testing.assert_allclose(floats, expected.astype("f4"), rtol=1e-6)
 
 
+@settings(deadline=None)
 @given(
     base=st.lists(st.integers(0, 255), min_size=6, max_size=6),
     places=st.sets(st.integers(0, 5), min_size=1),

@@ -193,12 +193,13 @@ def test_the_rich_file_is_whole() -> None:
     assert len(model.cameras) == len(model.lights) == 1
 
 
+@settings(deadline=None)
 @given(st.integers(0, len(RICH)))
 def test_cut_files_load_or_raise_model_errors(length: int) -> None:
     load_or_refuse(RICH[:length])
 
 
-@settings(max_examples=400)
+@settings(deadline=None, max_examples=400)
 @given(
     st.lists(
         st.tuples(st.integers(0, len(RICH) - 1), st.integers(0, 255)),
@@ -215,7 +216,7 @@ def test_damaged_files_load_or_raise_model_errors(
     load_or_refuse(bytes(data))
 
 
-@settings(max_examples=400)
+@settings(deadline=None, max_examples=400)
 @given(
     st.integers(0, 200),
     st.sampled_from(

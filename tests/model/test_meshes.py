@@ -165,8 +165,8 @@ def test_counts_morph_targets_as_not_drawn() -> None:
         ),
         (
             "meshes[0].primitives[0].indices",
-            0,
-            "indices: accessors[0] must hold plain unsigned scalars",
+            2,
+            "indices: there is no accessors[2], the file has 2",
         ),
         (
             "meshes[0].primitives[0].material",
@@ -200,6 +200,24 @@ def test_names_what_is_wrong(path: str, value: object, message: str) -> None:
         load_model(glb(changed(path, value)))
     assert str(caught.value).startswith("<bytes>: meshes[0].primitives[0]")
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("meshes[0].primitives[0].indices", 0),
+        ("accessors[1].normalized", True),
+        ("accessors[1].componentType", 5122),
+    ],
+)
+def test_indices_must_be_plain_unsigned_scalars(
+    path: str, value: object
+) -> None:
+    with pytest.raises(ModelError) as caught:
+        load_model(glb(changed(path, value)))
+    assert str(caught.value).endswith(
+        "holds indices, which must be plain unsigned scalars"
+    )
 
 
 def test_attributes_must_have_one_length() -> None:

@@ -80,6 +80,7 @@ def forests(draw: st.DrawFn) -> tuple[list[dict[str, Any]], list[int]]:
     return nodes, parents
 
 
+@settings(deadline=None)
 @given(forests())
 def test_world_matrices_are_products_along_the_tree(
     forest: tuple[list[dict[str, Any]], list[int]],
@@ -276,7 +277,7 @@ class TestScenes:
         assert message in str(caught.value)
 
 
-@settings(max_examples=25)
+@settings(deadline=None, max_examples=25)
 @given(forests())
 def test_bounds_hold_every_transformed_corner(
     forest: tuple[list[dict[str, Any]], list[int]],

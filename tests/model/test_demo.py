@@ -1,0 +1,71 @@
+"""The demo scene: valid textures, all of it before its camera, cheap."""
+
+import io
+import time
+
+import numpy as np
+from PIL import Image
+
+from moka.core.projection import perspective
+from moka.model import Perspective, demo_model
+from moka.model.demo import _tile_images
+
+
+def test_every_sphere_has_its_own_material() -> None:
+    model = demo_model()
+    _, meshes = model.instances()
+    assert len(meshes) == 24
+    assert len(model.materials) == 22
+    roughness = [m.roughness_factor for m in model.materials[1:8]]
+    np.testing.assert_allclose(roughness, np.linspace(0, 1, 7))
+
+
+def test_the_camera_sees_all_of_it() -> None:
+    model = demo_model()
+    (node,), (index,) = model.camera_instances()
+    view = model.cameras[index].projection
+    assert isinstance(view, Perspective)
+    world = model.nodes.world_matrices()
+    clip = perspective(view.yfov, 16 / 9, view.near, 100) @ np.linalg.inv(
+        world[node]
+    )
+    for row, mesh in zip(*model.instances(), strict=True):
+        for primitive in model.meshes[mesh].primitives:
+            points = (
+                np.c_[
+                    primitive.attributes["POSITION"],
+                    np.ones(primitive.vertex_count),
+                ]
+                @ (clip @ world[row]).T
+            )
+            assert (np.abs(points[:, :2]) < points[:, 3:]).all()
+
+
+def test_textures_are_pictures_that_repeat() -> None:
+    for data in _tile_images().values():
+        with Image.open(io.BytesIO(data)) as image:
+            image.load()
+            assert (image.size, image.mode) == ((256, 256), "RGB")
+            texels = np.asarray(image, np.int16)
+        for axis in (0, 1):
+            inside = np.abs(np.diff(texels, axis=axis)).max()
+            seam = np.take(texels, 0, axis) - np.take(texels, -1, axis)
+            assert np.abs(seam).max() <= inside + 2
+
+
+def test_normals_have_unit_length_and_point_outwards() -> None:
+    with Image.open(io.BytesIO(_tile_images()["normal"])) as image:
+        normals = np.asarray(image, np.float64) / 127.5 - 1
+    length = np.linalg.norm(normals, axis=-1)
+    np.testing.assert_allclose(length, 1, atol=0.02)
+    assert normals[..., 2].min() > 0.2
+    # The upper edge of a tile leans upwards, its left edge to the left.
+    assert normals[4, 64, 1] > 0.1
+    assert normals[64, 4, 0] < -0.1
+
+
+def test_it_is_built_quickly() -> None:
+    _tile_images.cache_clear()
+    start = time.process_time()
+    demo_model()
+    assert time.process_time() - start < 0.25
