@@ -19,9 +19,12 @@ __all__ = ["cosine_samples", "ggx_prefilter_samples", "hammersley", "pack"]
 
 Samples = NDArray[np.float32]
 
-# Neighbouring samples overlap by this many mip levels: the factor K = 4 in
-# solid angle of Křivánek and Colbert's section 4.
-OVERLAP = 1.0
+# Samples read this many mip levels above their share of the lobe, which hides
+# the gaps between them and blurs. Křivánek and Colbert's section 4 has 1.
+# Measured against sums over all texels, 64 samples, roughness 0.125 to 1: for
+# maps cut at 8 times their mean 0 has errors of 1 to 4 %, 0.5 of 1.5 to 6 %,
+# 1 of 2 to 8 %; for a map with its sun 26 to 70, 17 to 82, 28 to 70 %.
+OVERLAP = 0.5
 
 
 def hammersley(count: int) -> NDArray[np.float64]:
