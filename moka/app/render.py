@@ -194,8 +194,9 @@ def _render_with(
         renderer.draw(scene, camera, commands)
         display = renderer.read_display(commands) if want_display else None
         radiance = renderer.read_radiance(commands) if want_pixels else None
-        with statistics.stage("frame"):
-            counters = device.submit(commands).wait()
+        counters = device.submit(commands).wait()
+        for stage, seconds in device.stage_seconds().items():
+            statistics.add_time(stage, seconds)
     finally:
         renderer.close()
     statistics.gl.update(

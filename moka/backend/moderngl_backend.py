@@ -6,7 +6,8 @@ mesh, with the instance attributes pointed at its rows.
 """
 
 import contextlib
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from ctypes import byref, c_float
 from typing import Any
 
@@ -98,6 +99,8 @@ class ModernGLBackend:
         self._target: GlFramebuffer | None = None
         self._uploaded = 0
         self._closed = False
+        self._seconds: dict[str, float] = {}
+        self._read_seconds = 0.0
         self._initialise()
 
     def create_buffer(
@@ -115,7 +118,8 @@ class ModernGLBackend:
                     f"buffer {descriptor.label}: {size} bytes given for "
                     f"{descriptor.size}"
                 )
-            buffer = self._ctx.buffer(data, dynamic=descriptor.dynamic)
+            with self._timed("upload"):
+                buffer = self._ctx.buffer(data, dynamic=descriptor.dynamic)
             self._uploaded += size
         self._put(handle, buffer)
 
@@ -134,7 +138,8 @@ class ModernGLBackend:
                 f"{descriptor.height} is larger than this driver's "
                 f"{self.info.max_texture_size}"
             )
-        self._put(handle, GlTexture(self._gl, descriptor, data))
+        with self._timed("upload"):
+            self._put(handle, GlTexture(self._gl, descriptor, data))
         self._uploaded += sum(level.nbytes for level in data or ())
         self._check_errors(f"texture {descriptor.label}")
 
@@ -142,10 +147,11 @@ class ModernGLBackend:
         self, handle: Handle, descriptor: ProgramDescriptor
     ) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
-        self._put(
-            handle,
-            GlProgram(self._ctx, descriptor, self._blocks, self._explain_log),
-        )
+        with self._timed("compile"):
+            program = GlProgram(
+                self._ctx, descriptor, self._blocks, self._explain_log
+            )
+        self._put(handle, program)
         self._state.forget("program")
 
     def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
@@ -197,8 +203,20 @@ class ModernGLBackend:
         # GL names are reused: what the cache says is bound may be gone.
         self._state.forget()
 
-    def execute(self, recording: Recording) -> FrameCounters:
+    def execute(
+        self, recording: Recording, stage: str = "frame"
+    ) -> FrameCounters:
         """See :class:`moka.backend.protocol.Backend`."""
+        start = time.perf_counter()
+        counters = self._execute(recording)
+        spent = time.perf_counter() - start
+        if self._read_seconds:
+            self._add_time("readback", self._read_seconds)
+        self._add_time(stage, spent - self._read_seconds)
+        self._read_seconds = 0.0
+        return counters
+
+    def _execute(self, recording: Recording) -> FrameCounters:
         counters = FrameCounters(bytes_uploaded=self._uploaded)
         self._uploaded = 0
         self._state.counters = counters
@@ -226,6 +244,14 @@ class ModernGLBackend:
         texels: NDArray[Any] = self._get(handle).read(level, face)
         self._check_errors("read_texture")
         return texels
+
+    def stage_seconds(self) -> dict[str, float]:
+        """See :class:`moka.backend.protocol.Backend`.
+
+        A recording's time is the thread's own: the GPU may still be busy
+        when it ends, and then the next one that reads back waits for it.
+        """
+        return dict(self._seconds)
 
     def finish(self) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
@@ -261,6 +287,17 @@ class ModernGLBackend:
         if self.info.clip_control:
             # Depth from 0 to 1, so that reversed depth keeps its precision.
             gl.ClipControl(c.LOWER_LEFT, c.ZERO_TO_ONE)
+
+    @contextlib.contextmanager
+    def _timed(self, stage: str) -> Iterator[None]:
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self._add_time(stage, time.perf_counter() - start)
+
+    def _add_time(self, stage: str, seconds: float) -> None:
+        self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
 
     def _put(self, handle: Handle, resource: Any) -> None:
         self._resources[handle.kind, handle.index] = resource
@@ -438,6 +475,8 @@ class ModernGLBackend:
 
     def _read_pixels(self, command: ReadPixels) -> None:
         gl = self._gl
+        # Reading waits for the drawing, whose time is the frame's.
+        gl.Finish()
         handle = command.framebuffer
         name = 0 if handle is None else self._get(handle).name
         gl.BindFramebuffer(c.READ_FRAMEBUFFER, name)
@@ -446,7 +485,9 @@ class ModernGLBackend:
         _, _, width, height = command.rectangle
         pixels = np.empty((height, width, command.channels), command.dtype)
         layout, kind = c.readback_format(command.channels, command.dtype)
+        start = time.perf_counter()
         gl.ReadPixels(*command.rectangle, layout, kind, pixels.ctypes.data)
+        self._read_seconds += time.perf_counter() - start
         command.into.data = pixels
 
     def _explain_log(self, log: str, descriptor: ProgramDescriptor) -> str:

@@ -95,13 +95,18 @@ class Backend(Protocol):
     def destroy(self, handle: Handle) -> None:
         """Free a resource that no later recording uses."""
 
-    def execute(self, recording: Recording) -> FrameCounters:
-        """Run a recording from first to last step."""
+    def execute(
+        self, recording: Recording, stage: str = "frame"
+    ) -> FrameCounters:
+        """Run a recording; its time counts for ``stage``."""
 
     def read_texture(
         self, handle: Handle, level: int, face: int
     ) -> NDArray[Any]:
         """The texels of one level as stored: (height, width, channels)."""
+
+    def stage_seconds(self) -> dict[str, float]:
+        """Where time went: compile, upload, readback, stages of execute."""
 
     def finish(self) -> None:
         """Return when the GPU has done all that was asked."""

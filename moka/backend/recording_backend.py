@@ -41,6 +41,7 @@ class RecordingBackend:
         self.contents: dict[Handle, bytes] = {}
         self.given_levels: dict[Handle, int] = {}
         self.frames: list[Recording] = []
+        self.stages: list[str] = []
         self.batches: list[Batches] = []
         self.presented = 0
         self.closed = False
@@ -109,9 +110,12 @@ class RecordingBackend:
         self.contents.pop(handle, None)
         self.given_levels.pop(handle, None)
 
-    def execute(self, recording: Recording) -> FrameCounters:
+    def execute(
+        self, recording: Recording, stage: str = "frame"
+    ) -> FrameCounters:
         """Keep the recording; fill buffers; answer read-backs with zeros."""
         self.frames.append(recording)
+        self.stages.append(stage)
         batches = merge_draws(recording, self._meshes)
         self.batches.append(batches)
         uploaded = recording.instances.nbytes
@@ -145,6 +149,10 @@ class RecordingBackend:
             (height, width, descriptor.format.channels),
             descriptor.format.dtype,
         )
+
+    def stage_seconds(self) -> dict[str, float]:
+        """Nothing takes time on paper."""
+        return {}
 
     def finish(self) -> None:
         """There is nothing to wait for."""

@@ -219,11 +219,18 @@ class GraphicsDevice:
         """How many resources of ``kind`` are alive."""
         return self._handles.count(kind)
 
-    def submit(self, commands: CommandList, *, sort: bool = True) -> Frame:
+    def submit(
+        self,
+        commands: CommandList,
+        *,
+        sort: bool = True,
+        stage: str = "frame",
+    ) -> Frame:
         """Hand a frame over, in key order or as recorded.
 
-        Waits until at most one other frame is in flight. Raises
-        CommandError for handles that are destroyed or another device's.
+        Its time counts for ``stage`` in :meth:`stage_seconds`. Waits until
+        at most one other frame is in flight. Raises CommandError for
+        handles that are destroyed or another device's.
         """
         recording = commands.finish(sort=sort)
         for handles in recording.handles:
@@ -233,7 +240,9 @@ class GraphicsDevice:
             self._in_flight.wait()
         frame = Frame(
             self._thread,
-            self._thread.post(lambda backend: backend.execute(recording)),
+            self._thread.post(
+                lambda backend: backend.execute(recording, stage)
+            ),
         )
         self._in_flight = frame
         return frame
@@ -258,6 +267,10 @@ class GraphicsDevice:
         return self._thread.call(
             lambda backend: backend.read_texture(texture, level, face)
         )
+
+    def stage_seconds(self) -> dict[str, float]:
+        """Where the render thread's time went so far, by stage."""
+        return self._thread.call(lambda backend: backend.stage_seconds())
 
     def finish(self) -> None:
         """Return when the GPU has done everything submitted so far."""
