@@ -53,7 +53,7 @@ from moka.commands.descriptors import (
 )
 from moka.commands.draws import INSTANCE
 from moka.commands.handles import Handle, ResourceKind
-from moka.core.errors import DeviceError
+from moka.core.errors import DeviceError, ShaderError
 
 __all__ = ["ModernGLBackend"]
 
@@ -148,9 +148,14 @@ class ModernGLBackend:
     ) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
         with self._timed("compile"):
-            program = GlProgram(
-                self._ctx, descriptor, self._blocks, self._explain_log
-            )
+            try:
+                program = GlProgram(
+                    self._ctx, descriptor, self._blocks, self._explain_log
+                )
+            except ShaderError:
+                # The driver reports the same fault as a debug message.
+                self._context.drain_debug_messages()
+                raise
         self._put(handle, program)
         self._state.forget("program")
 
