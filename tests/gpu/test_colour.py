@@ -70,13 +70,14 @@ def test_the_pass_exposes_maps_and_encodes(name, gamma):
     defines = {f"MOKA_TONE_MAP_{name.upper()}": 1}
     if gamma:
         defines["MOKA_ENCODE_GAMMA"] = 1
-    parameters = np.array([2.0**1.5, 1.0 / (gamma or 1.0), 0, 0], np.float32)
+    block = np.zeros((2, 4), np.float32)
+    block[0, :2] = 2.0**1.5, 1.0 / (gamma or 1.0)
     picture = gpu().draw(
         "tone_map.frag",
         (100, 40),
         defines=defines,
         textures={"radiance_map": gpu().texture(texels)},
-        blocks={"ToneMap": parameters.tobytes()},
+        blocks={"ToneMap": block.tobytes()},
     )
     display = tone_map(radiance.astype(np.float64), name, 1.5)
     code = display ** (1.0 / gamma) if gamma else encode_srgb(display)
@@ -84,3 +85,20 @@ def test_the_pass_exposes_maps_and_encodes(name, gamma):
     # Near black a power curve magnifies rounding; 8 bits do not see it.
     assert np.abs(picture[..., :3] - code).max() < 1e-3
     assert np.abs(picture[..., 3:] - alpha).max() < 1e-6
+
+
+def test_a_background_colour_leaves_as_it_was_given():
+    """Neither exposed nor tone mapped, and covered by what is in front."""
+    behind = np.array([0.2, 0.4, 0.6])
+    texels = np.array([[[0, 0, 0, 0], [0.25, 0.25, 0.25, 0.5], [1, 0, 0, 1]]])
+    block = np.array([[4, 1, 0, 0], [*behind, 1]], np.float32)
+    picture = gpu().draw(
+        "tone_map.frag",
+        (3, 1),
+        textures={"radiance_map": gpu().texture(texels)},
+        blocks={"ToneMap": block.tobytes()},
+    )
+    # Exposed by two stops, 0.5 becomes 1 and half of the pixel.
+    light = np.array([behind, 0.5 * behind + 0.5, [1.0, 0.0, 0.0]])
+    assert np.abs(picture[0, :, :3] - encode_srgb(light)).max() < TOLERANCE
+    assert (picture[..., 3] == 1.0).all()

@@ -2,9 +2,11 @@
 
 What comes back are float32 arrays, to be compared with the float64 oracles.
 It speaks to the driver through bare ModernGL, so that a shader can be
-tested without the renderer around it.
+tested without the renderer around it. The environment variable
+MOKA_TEST_BACKEND picks the kind of context: egl, osmesa or window.
 """
 
+import os
 import threading
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -16,7 +18,9 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
+from moka.backend.contexts import open_context
 from moka.commands.descriptors import ShaderText
+from moka.core.errors import ContextError
 from moka.graphics.shader_source import (
     explain_log,
     load_shader,
@@ -38,14 +42,12 @@ class Gpu:
     """A context of its own, and the programs that were built in it."""
 
     def __init__(self) -> None:
-        # EGL first; without it whatever this platform calls standalone.
+        backend = os.environ.get("MOKA_TEST_BACKEND", "auto")
         try:
-            self.context = moderngl.create_context(
-                standalone=True, require=330, backend="egl"
-            )
-        except Exception:
-            pytest.skip("no OpenGL context through EGL")
-        self.context.enable_direct(0x884F)  # seamless cube maps
+            self._owner = open_context(backend, debug=True)
+        except ContextError as error:
+            pytest.skip(str(error))
+        self.context = self._owner.gl
         self._programs: dict[tuple[str, str], moderngl.Program] = {}
         self._framebuffers: dict[
             tuple[int, int, str], moderngl.Framebuffer
@@ -170,8 +172,9 @@ class Gpu:
         vertices = self.context.vertex_array(program, [])
         vertices.render(moderngl.TRIANGLES, vertices=3)
         data = framebuffer.read(components=4, dtype=dtype)
-        error = self.context.error
-        assert error == "GL_NO_ERROR", error
+        messages = self._owner.drain_debug_messages()
+        assert not [message for message in messages if message.is_error]
+        assert self.context.error == "GL_NO_ERROR"
         for resource in (vertices, *buffers):
             resource.release()
         kinds = {"f4": np.float32, "f2": np.float16, "f1": np.uint8}
