@@ -4,6 +4,7 @@ import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 import numpy as np
 
@@ -40,14 +41,28 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
         raise ModelError(f"{path}: a model is saved as .glb or .gltf")
     gltf = _document(model)
     try:
-        if suffix == ".glb":
-            gltf.save_binary(path)
-        else:
-            gltf.save_json(path)
+        for file, data in _files(gltf, path).items():
+            file.write_bytes(data)
     except OSError as error:
         raise ModelError(
             f"{path}: cannot be written: {error.strerror}"
         ) from error
+    except ValueError as error:  # JSON has no word for NaN or infinity
+        raise ModelError(
+            f"{path}: cannot be written: a number is not finite"
+        ) from error
+
+
+def _files(gltf: "pygltflib.GLTF2", path: Path) -> dict[Path, bytes]:
+    """The files of a document, whole before the first of them is opened."""
+    if path.suffix.lower() == ".glb":
+        return {path: b"".join(gltf.save_to_bytes())}
+    files = {}
+    if gltf.buffers:
+        beside = path.with_suffix(".bin")
+        gltf.buffers[0].uri = quote(beside.name)
+        files[beside] = gltf.binary_blob()
+    return {**files, path: gltf.gltf_to_json().encode()}
 
 
 def _document(model: Model) -> "pygltflib.GLTF2":

@@ -211,6 +211,11 @@ def test_says_why_it_cannot_save(tmp_path: Path) -> None:
         save_model(model, tmp_path / "model.obj")
     with pytest.raises(ModelError, match="cannot be written: No such file"):
         save_model(model, tmp_path / "gone" / "model.glb")
+    strange = Material(roughness_factor=math.nan)
+    with pytest.raises(ModelError, match="a number is not finite"):
+        save_model(
+            model_of([(quad(), strange, np.eye(4))]), tmp_path / "nan.glb"
+        )
     model.meshes[0].primitives[0].release()
     with pytest.raises(ModelError, match="was released"):
         save_model(model, tmp_path / "model.glb")
@@ -222,7 +227,7 @@ def test_says_why_it_cannot_save(tmp_path: Path) -> None:
         textured = model_of([(quad(), material, np.eye(4))])
         with pytest.raises(error, match="here: "):
             save_model(textured, tmp_path / "model.glb")
-    assert not (tmp_path / "model.glb").exists()
+    assert not list(tmp_path.iterdir())
 
 
 class TestPygltflib:
