@@ -6,7 +6,7 @@ buffers and views, and errors that name the file and the JSON path.
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import Protocol, TypeAlias
 
 from moka.core.errors import ModelError
 from moka.model.container import read_file, split_container
@@ -19,13 +19,21 @@ from moka.model.uri import (
     resolve,
 )
 
-if TYPE_CHECKING:
-    import pygltflib
+__all__ = ["GltfSource", "ModelSource", "PygltflibDocument", "open_source"]
 
-__all__ = ["GltfSource", "ModelSource", "open_source"]
+
+class PygltflibDocument(Protocol):
+    """What moka asks of a ``pygltflib.GLTF2``, which has no types itself."""
+
+    def to_json(self) -> str:
+        """The document as JSON text."""
+
+    def binary_blob(self) -> bytes | None:
+        """The binary chunk, if there is one."""
+
 
 ModelSource: TypeAlias = (
-    "str | os.PathLike[str] | bytes | bytearray | memoryview | pygltflib.GLTF2"
+    str | os.PathLike[str] | bytes | bytearray | memoryview | PygltflibDocument
 )
 
 
@@ -155,7 +163,7 @@ def _from_bytes(data: memoryview, where: str, path: Path | None) -> GltfSource:
     )
 
 
-def _from_pygltflib(gltf: "pygltflib.GLTF2") -> GltfSource:
+def _from_pygltflib(gltf: PygltflibDocument) -> GltfSource:
     """Its objects take any value, so they pass through JSON to be checked."""
     folder = getattr(gltf, "_path", None)
     where = getattr(gltf, "_name", None) or "<pygltflib.GLTF2>"
