@@ -8,7 +8,7 @@ functions work on whole arrays of integers.
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["connected_components", "corner_links", "equal_rows"]
+__all__ = ["Integers", "connected_components", "corner_links", "equal_rows"]
 
 Integers = NDArray[np.int64]
 

@@ -37,11 +37,10 @@ _SPACING = 2 * _TILE
 _RADIUS = 0.52
 _WIDTH = _COLUMNS * _SPACING
 
-# Reflectance at normal incidence in linear Rec.709, from the refractive
-# indices measured by Rakic et al. 1998 (aluminium) and Johnson and Christy
-# 1972 (gold).
-_ALUMINIUM = (0.912, 0.914, 0.920)
-_GOLD = (1.000, 0.766, 0.336)
+# Reflectance at normal incidence in linear Rec.709, rounded from what the
+# metals' measured refractive indices give.
+_ALUMINIUM = (0.91, 0.92, 0.92)
+_GOLD = (1.0, 0.77, 0.34)
 
 Item = tuple[Primitive, Material | None, Array]
 

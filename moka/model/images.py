@@ -15,8 +15,9 @@ from moka.model import schema
 from moka.model.source import GltfSource
 from moka.model.uri import is_data_uri
 
-__all__ = ["ImageReader", "sampler_descriptor"]
+__all__ = ["MAGNIFY", "MINIFY", "WRAPS", "ImageReader", "sampler_descriptor"]
 
+# What the numbers in samplers mean, which are OpenGL's.
 WRAPS = {
     10497: Wrap.REPEAT,
     33071: Wrap.CLAMP_TO_EDGE,
