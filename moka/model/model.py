@@ -73,7 +73,9 @@ class Model:
             return None
         kept = shown[meshes]
         world = self.nodes.world_matrices()[nodes[kept]]
-        return union_bounds(transform_bounds(world, boxes[meshes[kept]]))
+        # Matrices that overflowed along the tree give boxes without end.
+        with np.errstate(invalid="ignore", over="ignore"):
+            return union_bounds(transform_bounds(world, boxes[meshes[kept]]))
 
     def _placed(self, what: NDArray[np.int32], scene: int | None) -> Placements:
         index = self.default_scene if scene is None else scene
