@@ -3,6 +3,11 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# A slow machine is no fault of the code; examples are few but the same.
+settings.register_profile("moka", deadline=None, derandomize=True)
+settings.load_profile("moka")
 
 ASSETS = Path(__file__).resolve().parents[2] / "shared" / "assets"
 

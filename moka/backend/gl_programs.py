@@ -96,9 +96,12 @@ class GlProgram:
 
 @dataclass(frozen=True, slots=True)
 class Bindings:
-    """What one bind group binds for one program."""
+    """What one bind group binds for one program.
 
-    textures: tuple[tuple[int, int, int, int], ...]
+    Arguments of :meth:`StateCache.texture` and ``uniform_block``.
+    """
+
+    textures: tuple[tuple[int, int, int, int, tuple[int, int]], ...]
     blocks: tuple[tuple[int, int, int, int], ...]
 
 
@@ -122,11 +125,14 @@ def match_bindings(
                 f"program {program.label}: reads texture {name!r}, which its "
                 "bind group does not hold"
             )
-        texture = textures(by_name[name].texture)
-        sampler = samplers.name(
-            by_name[name].sampler, texture.descriptor.level_count > 1
+        wanted = by_name[name]
+        texture = textures(wanted.texture)
+        last = texture.descriptor.level_count - 1
+        levels = (0, last) if wanted.level is None else (wanted.level,) * 2
+        sampler = samplers.name(wanted.sampler, levels[0] < levels[1])
+        bound_textures.append(
+            (unit, texture.target, texture.name, sampler, levels)
         )
-        bound_textures.append((unit, texture.target, texture.name, sampler))
     bound_blocks = []
     uniforms = {binding.name: binding for binding in group.uniforms}
     for name, (point, size) in program.blocks.items():

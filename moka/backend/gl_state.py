@@ -47,11 +47,22 @@ class StateCache:
         if self._differs("vertex_array", name):
             self._gl.BindVertexArray(name)
 
-    def texture(self, unit: int, target: int, name: int, sampler: int) -> None:
-        """Bind a texture and its sampler to a unit."""
+    def texture(
+        self,
+        unit: int,
+        target: int,
+        name: int,
+        sampler: int,
+        levels: tuple[int, int],
+    ) -> None:
+        """Bind a texture and its sampler to a unit; first and last level."""
         if self._differs(("texture", unit, target), name):
             self._gl.ActiveTexture(c.TEXTURE0 + unit)
             self._gl.BindTexture(target, name)
+        if levels != (0, 0) and self._differs(("levels", name), levels):
+            self._gl.ActiveTexture(c.TEXTURE0 + unit)
+            self._gl.TexParameteri(target, c.TEXTURE_BASE_LEVEL, levels[0])
+            self._gl.TexParameteri(target, c.TEXTURE_MAX_LEVEL, levels[1])
         if self._differs(("sampler", unit), sampler):
             self._gl.BindSampler(unit, sampler)
 

@@ -353,7 +353,7 @@ class CommandList:
         draws = _concatenate(self._draws, DRAW)
         order = self._order(draws["key"], sort)
         steps, rows = self._steps(order)
-        draws = draws[rows]
+        draws = _take(draws, rows)
         instances = _gather_instances(
             draws, _concatenate(self._instances, INSTANCE)
         )
@@ -433,12 +433,26 @@ class CommandList:
         return steps, (np.concatenate(rows) if rows else np.zeros(0, np.int64))
 
 
+def _words(rows: NDArray[np.void]) -> NDArray[np.uint64]:
+    """The same memory as (N, words of a row): copied in one go, ten times
+    faster than NumPy copies structures field by field.
+    """
+    rows = np.ascontiguousarray(rows)
+    return rows.view(np.uint64).reshape(len(rows), rows.itemsize // 8)
+
+
 def _concatenate(
     arrays: list[NDArray[np.void]], dtype: np.dtype[np.void]
 ) -> NDArray[np.void]:
     if len(arrays) == 1:
         return arrays[0]
-    return np.concatenate(arrays) if arrays else np.zeros(0, dtype)
+    if not arrays:
+        return np.zeros(0, dtype)
+    return np.concatenate([_words(rows) for rows in arrays]).view(dtype)[:, 0]
+
+
+def _take(rows: NDArray[np.void], order: NDArray[np.int64]) -> NDArray[np.void]:
+    return _words(rows).take(order, axis=0).view(rows.dtype)[:, 0]
 
 
 def _gather_instances(draws: Draws, instances: Instances) -> Instances:
@@ -453,4 +467,4 @@ def _gather_instances(draws: Draws, instances: Instances) -> Instances:
         shift = draws["first_instance"].astype(np.int64) - starts
         rows = np.arange(total) + np.repeat(shift, counts)
     draws["first_instance"] = starts
-    return instances.take(rows)
+    return _take(instances, rows)

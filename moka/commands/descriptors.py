@@ -320,11 +320,16 @@ class RasterState:
 
 @dataclass(frozen=True, slots=True)
 class TextureBinding:
-    """A texture and its sampler for the sampler uniform ``name``."""
+    """A texture and its sampler for the sampler uniform ``name``.
+
+    With ``level`` that one mip level is all there is, as level 0: so a pass
+    can read one level of a texture while it draws into another.
+    """
 
     name: str
     texture: Handle
     sampler: SamplerDescriptor = SamplerDescriptor()
+    level: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,65 +17,92 @@ from moka.scene.culling import view_depths
 from moka.scene.drawables import Drawables
 from moka.scene.transforms import TransformTree
 
-__all__ = ["gather_draws"]
+__all__ = ["DrawGatherer"]
 
 
-def gather_draws(
-    drawables: Drawables,
-    transforms: TransformTree,
-    prepared: PreparedScene,
-    visible: NDArray[np.intp],
-    view: View,
-    states: NDArray[np.uint32],
-    pass_: int,
-) -> tuple[Draws, Instances]:
-    """Rows of DRAW and INSTANCE for the draws ``visible`` (V,).
+class DrawGatherer:
+    """Gathers the draws of one prepared scene, frame after frame.
 
-    ``states`` maps the prepared scene's state numbers to the command
-    list's, ``pass_`` is the frame's pass that they belong to.
+    What only moves with the camera is computed for a frame; what only moves
+    with the objects is kept until one of them moves.
     """
-    rows = prepared.rows[drawables.primitive[visible]]
-    draws = np.empty(len(visible), DRAW)
-    draws["program"] = rows["program"]
-    draws["bind_group"] = rows["bind_group"]
-    draws["mesh"] = rows["mesh"]
-    draws["state"] = states[rows["state"] + drawables.mirrored[visible]]
-    draws["first_instance"] = np.arange(len(visible))
-    draws["instance_count"] = 1
-    depth = view_depths(view.matrix, drawables.world_bounds[visible])
-    draws["key"] = _keys(rows, depth, pass_)
 
-    world = transforms.world[drawables.row[visible], :3]
-    # In double precision, before anything is rounded.
-    world[:, :, 3] -= view.position
-    instances = np.zeros(len(visible), INSTANCE)
-    instances["transform"] = world
-    instances["material"] = rows["material"]
-    instances["object"] = visible
-    return draws, instances
+    def __init__(self, drawables: Drawables, prepared: PreparedScene) -> None:
+        self._drawables = drawables
+        rows = prepared.rows[drawables.primitive]
+        count = len(rows)
+        self._draws = np.zeros(count, DRAW)
+        for name in ("program", "bind_group", "mesh"):
+            self._draws[name] = rows[name]
+        self._draws["instance_count"] = 1
+        self._state = rows["state"].astype(np.intp)
+        self._layer = rows["layer"]
+        self._blended = rows["blended"]
+        self._instances = np.zeros(count, INSTANCE)
+        self._instances["material"] = rows["material"]
+        self._instances["object"] = np.arange(count)
+        self._positions = np.zeros((count, 3))
+        self._version = -1
 
+    def gather(
+        self,
+        transforms: TransformTree,
+        visible: NDArray[np.intp],
+        view: View,
+        states: NDArray[np.uint32],
+        pass_: int,
+    ) -> tuple[Draws, Instances]:
+        """Rows of DRAW and INSTANCE for the draws ``visible`` (V,).
 
-def _keys(
-    rows: NDArray[np.void], depth: NDArray[np.float64], pass_: int
-) -> NDArray[np.uint64]:
-    # Slots of handles can exceed a field, whose bits only group draws.
-    program = rows["program"] & np.uint32((1 << PROGRAM_BITS) - 1)
-    material = rows["bind_group"] & np.uint32((1 << MATERIAL_BITS) - 1)
-    keys = pack_opaque_keys(
-        pass_=pass_,
-        layer=rows["layer"],
-        program=program,
-        material=material,
-        mesh=rows["mesh"] & np.uint32((1 << MESH_BITS) - 1),
-        depth=depth,
-    )
-    blended = rows["blended"]
-    if blended.any():
-        keys[blended] = pack_blended_keys(
-            pass_=pass_,
-            layer=rows["layer"][blended],
-            program=program[blended],
-            material=material[blended],
-            depth=depth[blended],
+        ``states`` maps the prepared scene's state numbers to the command
+        list's, ``pass_`` is the frame's pass that they belong to.
+        """
+        drawables = self._drawables
+        if self._version != transforms.version:
+            self._version = transforms.version
+            world = transforms.world[drawables.row, :3]
+            self._instances["transform"] = world
+            self._positions = world[:, :, 3]
+        draws = self._draws.take(visible)
+        draws["state"] = states[
+            self._state[visible] + drawables.mirrored[visible]
+        ]
+        draws["first_instance"] = np.arange(len(visible))
+        depth = view_depths(view.matrix, drawables.world_bounds[visible])
+        draws["key"] = self._keys(draws, visible, depth, pass_)
+        instances = self._instances.take(visible)
+        # In double precision, before anything is rounded.
+        instances["transform"][:, :, 3] = (
+            self._positions[visible] - view.position
         )
-    return keys
+        return draws, instances
+
+    def _keys(
+        self,
+        draws: Draws,
+        visible: NDArray[np.intp],
+        depth: NDArray[np.float64],
+        pass_: int,
+    ) -> NDArray[np.uint64]:
+        # Slots of handles can exceed a field, whose bits only group draws.
+        program = draws["program"] & np.uint32((1 << PROGRAM_BITS) - 1)
+        material = draws["bind_group"] & np.uint32((1 << MATERIAL_BITS) - 1)
+        layer = self._layer[visible]
+        keys = pack_opaque_keys(
+            pass_=pass_,
+            layer=layer,
+            program=program,
+            material=material,
+            mesh=draws["mesh"] & np.uint32((1 << MESH_BITS) - 1),
+            depth=depth,
+        )
+        blended = self._blended[visible]
+        if blended.any():
+            keys[blended] = pack_blended_keys(
+                pass_=pass_,
+                layer=layer[blended],
+                program=program[blended],
+                material=material[blended],
+                depth=depth[blended],
+            )
+        return keys

@@ -110,8 +110,8 @@ class LightingDescription:
     @property
     def needs_table(self) -> bool:
         """Whether lit materials read the table of directional albedo."""
-        compensates = self.multiscatter and self.brdf != "blinn-phong"
-        return self.environment or bool(self.light_capacity and compensates)
+        lights = bool(self.light_capacity)
+        return self.environment or (lights and self.multiscatter)
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.graphics.program_cache import ProgramCache
-from moka.renderer.gather import gather_draws
+from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.light_sources import LightSources, light_capacity
 from moka.renderer.permutation import FRAME, LightingDescription
@@ -92,6 +92,7 @@ class Renderer:
         self._materials_key: object = None
         self._prepared: PreparedScene | None = None
         self._prepared_key: object = None
+        self._gatherer: DrawGatherer
 
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
@@ -139,14 +140,8 @@ class Renderer:
         )
         commands.use(prepared.handles)
         commands.draws(
-            *gather_draws(
-                scene.drawables,
-                scene.transforms,
-                prepared,
-                visible,
-                view,
-                states,
-                PASS_SCENE,
+            *self._gatherer.gather(
+                scene.transforms, visible, view, states, PASS_SCENE
             )
         )
         self._draw_behind(scene, view, commands)
@@ -241,6 +236,7 @@ class Renderer:
             self._textures,
         )
         self._prepared_key = key
+        self._gatherer = DrawGatherer(scene.drawables, self._prepared)
         return self._prepared
 
     def _update_targets(self) -> Targets:

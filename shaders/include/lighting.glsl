@@ -6,10 +6,12 @@
 #include "include/environment.glsl"
 #include "include/multiscatter.glsl"
 
+const vec3 DIELECTRIC_F0 = vec3(0.04);
+
 // What the terms need to know of a point: glTF 2.0, appendix B.2.
 struct Surface {
     vec3 diffuse_colour;
-    vec3 f0;
+    vec3 f0;             // of dielectric and metal, mixed
     vec3 f90;
     float roughness;
     float occlusion;
@@ -28,7 +30,7 @@ Surface make_surface(
 ) {
     Surface surface;
     surface.diffuse_colour = base_colour * (1.0 - metalness);
-    surface.f0 = mix(vec3(0.04), base_colour, metalness);
+    surface.f0 = mix(DIELECTRIC_F0, base_colour, metalness);
     surface.f90 = vec3(1.0);
     surface.roughness = roughness;
     surface.occlusion = occlusion;
@@ -41,6 +43,14 @@ Surface make_surface(
     surface.table = vec2(1.0, 0.0);
 #endif
     return surface;
+}
+
+// The part of light that reaches the diffuse base. It is the dielectric's
+// alone: glTF 2.0, B.2.4, mixes a dielectric and a metal by metalness.
+float base_share(Surface surface) {
+    return diffuse_share(
+        specular_albedo(DIELECTRIC_F0, surface.f90, surface.table)
+        * multiscatter_scale(DIELECTRIC_F0, surface.table));
 }
 
 #ifdef MOKA_ENVIRONMENT
@@ -63,7 +73,7 @@ vec3 environment_light(Surface surface) {
         surface.roughness * specular_levels).rgb;
 #ifdef MOKA_IRRADIANCE
     float n_dot_v = clamp_n_dot_v(dot(surface.normal, surface.view));
-    vec3 diffuse = diffuse_share(specular)
+    vec3 diffuse = base_share(surface)
         * diffuse_albedo(n_dot_v, surface.diffuse_colour, surface.roughness);
     light += diffuse * textureLod(
         irradiance_cube,
@@ -87,7 +97,14 @@ float distance_attenuation(float squared_distance, float inverse_range) {
     return window / max(squared_distance, 1e-8);
 }
 
+// With energy compensation a light is reflected as the same light in an
+// environment map would be, and never more than all of it. Without, it is
+// glTF 2.0's appendix B to the letter, whose diffuse term (1 - F(v.h))
+// lets base and interface together return up to 1.9 at grazing angles.
 vec3 punctual_light(Surface surface) {
+#ifdef MOKA_MULTISCATTER
+    float base = base_share(surface);
+#endif
     vec3 scale = multiscatter_scale(surface.f0, surface.table);
     float alpha = alpha_from_roughness(surface.roughness);
     float k = schlick_k_direct(surface.roughness);
@@ -111,8 +128,13 @@ vec3 punctual_light(Surface surface) {
         if (angles.n_dot_l <= 0.0 || attenuation <= 0.0) continue;
         vec3 fresnel =
             fresnel_schlick(angles.v_dot_h, surface.f0, surface.f90);
+#ifdef MOKA_MULTISCATTER
+        vec3 share = vec3(base);
+#else
+        vec3 share = 1.0 - fresnel;
+#endif
         vec3 reflected = fresnel * scale * specular_lobe(angles, alpha, k)
-            + (1.0 - fresnel) * diffuse_brdf(
+            + share * diffuse_brdf(
                 angles, surface.diffuse_colour, surface.roughness);
         sum += reflected * light.intensity
             * (angles.n_dot_l * attenuation);
