@@ -1,0 +1,151 @@
+"""Descriptions hold what changes a shader, and nothing else."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from moka.commands.descriptors import SamplerDescriptor, Topology, Wrap
+from moka.core.encoded_image import EncodedImage
+from moka.core.errors import ModelError
+from moka.material.description import (
+    Feature,
+    MaterialDescription,
+    defines_of,
+    describe_material,
+)
+from moka.material.material import (
+    AlphaMode,
+    Material,
+    Texture,
+    TextureTransform,
+)
+
+IMAGE = EncodedImage("model.gltf: images[0]", data=b"one")
+OTHER = EncodedImage("model.gltf: images[1]", data=b"two")
+ALL = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0")
+
+
+def describe(**fields: object) -> MaterialDescription:
+    """The description of a material on vertices with everything."""
+    return describe_material(Material(**fields), ALL)
+
+
+def test_equal_materials_share_a_description() -> None:
+    first = describe(base_colour_factor=(1, 0, 0, 1), roughness_factor=0.1)
+    second = describe(base_colour_factor=(0, 1, 0, 1), roughness_factor=0.9)
+    assert first == second
+    assert hash(first) == hash(second)
+
+
+def test_a_plain_material_reads_position_and_normal_only() -> None:
+    description = describe_material(Material(), ALL[:5])
+    assert description.attributes == ("POSITION", "NORMAL")
+    assert description.textures == ()
+
+
+def test_tangents_are_read_for_a_normal_map_only() -> None:
+    with_map = describe(normal_texture=Texture(IMAGE))
+    assert Feature.VERTEX_TANGENT in with_map.features
+    assert "TANGENT" in with_map.attributes
+    flat = describe(normal_texture=Texture(IMAGE), normal_scale=0.0)
+    assert Feature.VERTEX_TANGENT not in flat.features
+    assert flat.textures == ()
+
+
+def test_an_emissive_texture_under_a_black_factor_is_left_out() -> None:
+    dark = describe(emissive_texture=Texture(IMAGE))
+    assert dark.textures == ()
+    assert Feature.EMISSIVE not in dark.features
+    bright = describe(
+        emissive_texture=Texture(IMAGE), emissive_factor=(1, 1, 1)
+    )
+    assert [use.slot for use in bright.textures] == ["emissive"]
+
+
+def test_unlit_reads_its_base_colour_only() -> None:
+    description = describe(
+        unlit=True,
+        base_colour_texture=Texture(IMAGE),
+        normal_texture=Texture(OTHER),
+        emissive_texture=Texture(OTHER),
+        emissive_factor=(1, 1, 1),
+    )
+    assert [use.slot for use in description.textures] == ["base_colour"]
+    assert "NORMAL" not in description.attributes
+
+
+def test_textures_without_their_coordinates_are_left_out() -> None:
+    material = Material(base_colour_texture=Texture(IMAGE, uv_set=1))
+    description = describe_material(material, ("POSITION", "TEXCOORD_0"))
+    assert description.textures == ()
+
+
+def test_occlusion_in_the_roughness_texture_costs_no_sample() -> None:
+    shared = describe(
+        metallic_roughness_texture=Texture(IMAGE),
+        occlusion_texture=Texture(IMAGE),
+    )
+    assert [use.slot for use in shared.textures] == ["metallic_roughness"]
+    assert Feature.PACKED_OCCLUSION in shared.features
+    for different in (
+        Texture(OTHER),
+        Texture(IMAGE, uv_set=1),
+        Texture(IMAGE, SamplerDescriptor(Wrap.CLAMP_TO_EDGE)),
+        Texture(IMAGE, transform=TextureTransform(offset=(0.5, 0))),
+    ):
+        apart = describe(
+            metallic_roughness_texture=Texture(IMAGE),
+            occlusion_texture=different,
+        )
+        assert len(apart.textures) == 2
+
+
+def test_a_pure_metal_needs_no_diffuse_light() -> None:
+    assert Feature.DIFFUSE not in describe(metallic_factor=1.0).features
+    assert Feature.DIFFUSE in describe(metallic_factor=0.9).features
+    textured = describe(metallic_roughness_texture=Texture(IMAGE))
+    assert Feature.DIFFUSE in textured.features
+
+
+def test_a_third_set_of_coordinates_is_an_error_that_names_it() -> None:
+    with pytest.raises(ModelError, match="TEXCOORD_2"):
+        describe(base_colour_texture=Texture(IMAGE, uv_set=2))
+
+
+@given(
+    st.sampled_from(AlphaMode),
+    st.booleans(),
+    st.booleans(),
+    st.sampled_from([Topology.POINTS, Topology.TRIANGLES]),
+    st.sets(st.sampled_from(ALL[1:])),
+    st.integers(0, 1),
+    st.booleans(),
+)
+def test_defines_are_named_and_follow_the_description(
+    alpha_mode: AlphaMode,
+    double_sided: bool,
+    unlit: bool,
+    topology: Topology,
+    attributes: set[str],
+    uv_set: int,
+    moved: bool,
+) -> None:
+    transform = TextureTransform(rotation=1) if moved else None
+    material = Material(
+        alpha_mode=alpha_mode,
+        double_sided=double_sided,
+        unlit=unlit,
+        base_colour_texture=Texture(IMAGE, uv_set=uv_set, transform=transform),
+    )
+    description = describe_material(
+        material, {"POSITION", *attributes}, topology
+    )
+    defines = defines_of(description)
+    assert all(name.startswith("MOKA_") for name in defines)
+    assert set(description.attributes) <= {"POSITION", *attributes}
+    assert ("MOKA_ALPHA_MASK" in defines) == (alpha_mode is AlphaMode.MASK)
+    assert ("MOKA_DOUBLE_SIDED" in defines) == double_sided
+    has_uv = f"TEXCOORD_{uv_set}" in attributes
+    assert ("MOKA_BASE_COLOUR_TEXTURE" in defines) == has_uv
+    assert ("MOKA_BASE_COLOUR_TRANSFORM" in defines) == (has_uv and moved)
+    assert defines.get("MOKA_BASE_COLOUR_UV", uv_set) == uv_set
