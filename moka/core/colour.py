@@ -16,6 +16,7 @@ from moka.core.errors import OptionError
 
 __all__ = [
     "LUMINANCE_WEIGHTS",
+    "XYZ_TO_REC709",
     "decode_srgb",
     "decode_srgb8",
     "encode_srgb",
@@ -26,6 +27,16 @@ __all__ = [
 
 #: Rec. ITU-R BT.709, item 3.2: the share of each primary in the luminance.
 LUMINANCE_WEIGHTS = (0.2126, 0.7152, 0.0722)
+
+#: CIE XYZ to linear Rec.709, a (3, 3) matrix for columns, from the
+#: primaries and the white D65 of Rec. ITU-R BT.709, item 1.
+XYZ_TO_REC709 = np.array(
+    [
+        [3.2404542, -1.5371385, -0.4985314],
+        [-0.9692660, 1.8760108, 0.0415560],
+        [0.0556434, -0.2040259, 1.0572252],
+    ]
+)
 
 #: Elements worked on at a time, so that temporaries stay in the cache.
 _BLOCK = 1 << 15

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.core.atomic_file import image_file
+from moka.core.colour import XYZ_TO_REC709
 from moka.core.errors import EnvironmentMapError
 from moka.core.radiance_scanlines import decode_scanlines, encode_scanlines
 from moka.core.rgbe import decode_rgbe, encode_rgbe
@@ -29,16 +30,6 @@ _LONGEST_HEADER = 1 << 16
 _MOST_PIXELS = 1 << 28
 
 _RESOLUTION = re.compile(rb"([+-])([XY]) +(\d{1,9}) +([+-])([XY]) +(\d{1,9})")
-
-#: CIE XYZ to linear Rec.709 (ITU-R BT.709, white D65).
-_XYZ_TO_REC709 = np.array(
-    [
-        [3.2404542, -1.5371385, -0.4985314],
-        [-0.9692660, 1.8760108, 0.0415560],
-        [0.0556434, -0.2040259, 1.0572252],
-    ],
-    np.float32,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +81,7 @@ def parse_radiance_hdr(data: bytes, where: str) -> NDArray[np.float32]:
     if header.exposure != (1.0, 1.0, 1.0):
         pixels /= np.array(header.exposure, np.float32)
     if header.is_xyz:
-        pixels = pixels @ _XYZ_TO_REC709.T
+        pixels = pixels @ XYZ_TO_REC709.T.astype(np.float32)
     return _turn_upright(pixels, header.axes)
 
 
