@@ -116,7 +116,6 @@ def test_the_wheel_carries_all_it_needs_and_nothing_else(
     packed = {name for name in contents.namelist() if ".dist-info/" not in name}
     assert "moka/py.typed" in packed
     assert any(name.startswith("moka/shaders/") for name in packed)
-    assert any(name.startswith("moka/assets/") for name in packed)
     assert packed == expected
 
 
