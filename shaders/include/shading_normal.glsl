@@ -8,6 +8,13 @@ in vec3 surface_normal;
 in vec4 surface_tangent;
 #endif
 
+// Back faces of a single-sided material are culled.
+#ifdef MOKA_DOUBLE_SIDED
+#define FRONT_FACING gl_FrontFacing
+#else
+#define FRONT_FACING true
+#endif
+
 // The plane of the triangle itself, towards the viewer: for right-handed
 // window coordinates this is the order of the product.
 vec3 facing_normal() {
@@ -24,7 +31,7 @@ vec3 front_normal() {
     float squared = dot(surface_normal, surface_normal);
     if (squared > 0.0) return surface_normal * inversesqrt(squared);
 #endif
-    return gl_FrontFacing ? facing_normal() : -facing_normal();
+    return FRONT_FACING ? facing_normal() : -facing_normal();
 }
 
 #ifdef MOKA_NORMAL_TEXTURE
@@ -39,7 +46,7 @@ mat3 cotangent_frame(vec3 n, vec2 uv) {
     vec2 duv1 = dFdx(uv);
     vec2 duv2 = dFdy(uv);
     // The construction wants n on the side that is seen.
-    float side = gl_FrontFacing ? 1.0 : -1.0;
+    float side = FRONT_FACING ? 1.0 : -1.0;
     vec3 dp2_perpendicular = cross(dp2, side * n);
     vec3 dp1_perpendicular = cross(side * n, dp1);
     vec3 t = dp2_perpendicular * duv1.x + dp1_perpendicular * duv2.x;
@@ -79,6 +86,6 @@ vec3 shading_normal(MaterialsRow row) {
     n = mapped_normal(n, row);
 #endif
     // glTF 2.0, 3.9.7: back faces of a double-sided material are lit with
-    // the normal reversed. Others are culled and never get here.
-    return gl_FrontFacing ? n : -n;
+    // the normal reversed.
+    return FRONT_FACING ? n : -n;
 }
