@@ -59,14 +59,17 @@ class Gpu:
         include: str | Sequence[str],
         defines: Defines = NO_DEFINES,
         /,
+        *,
+        textures: Mapping[str, Any] = NO_TEXTURES,
         **inputs: ArrayLike,
     ) -> NDArray[np.float32]:
         """The GLSL ``expression`` for every row of the ``inputs``.
 
         An input of shape (N,) is a float in GLSL, one of shape (N, k) a
         vector; single values are repeated. ``include`` names files of
-        ``shaders/include``. Returns shape (N,) for a float and (N, k) for a
-        vector of two or three, whichever the expression is.
+        ``shaders/include``, ``textures`` what their samplers read. Returns
+        shape (N,) for a float and (N, k) for a vector of two or three,
+        whichever the expression is.
         """
         arrays = {
             name: np.atleast_1d(np.asarray(value, np.float32))
@@ -78,20 +81,21 @@ class Gpu:
         count = max(len(array) for array in arrays.values())
         height = -(-count // WIDTH)
         with self.context:
-            textures = {}
+            values = {}
             for name, array in arrays.items():
                 texels = np.zeros((height * WIDTH, 4), np.float32)
                 rows = array.reshape(len(array), -1)
                 texels[:count, : rows.shape[1]] = rows
-                textures[f"input_{name}"] = self.context.texture(
+                values[f"input_{name}"] = self.context.texture(
                     (WIDTH, height), 4, texels.tobytes(), dtype="f4"
                 )
-            pixels = self._draw(text, (WIDTH, height), textures, {}, "f4")
-            for texture in textures.values():
+            bound = {**textures, **values}
+            pixels = self._draw(text, (WIDTH, height), bound, {}, "f4")
+            for texture in values.values():
                 texture.release()
-        values = pixels.reshape(-1, 4)[:count]
-        size = int(values[0, 3])
-        return values[:, 0] if size == 1 else values[:, :size]
+        rows = pixels.reshape(-1, 4)[:count]
+        size = int(rows[0, 3])
+        return rows[:, 0] if size == 1 else rows[:, :size]
 
     def draw(
         self,
