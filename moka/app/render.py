@@ -187,14 +187,13 @@ def _render_with(
     )
     try:
         renderer.begin(scene)
-        with statistics.stage("context"):
-            info = device.info
         scene.environment = environment.result()
         commands = CommandList()
         renderer.draw(scene, camera, commands)
         display = renderer.read_display(commands) if want_display else None
         radiance = renderer.read_radiance(commands) if want_pixels else None
         counters = device.submit(commands).wait()
+        info = device.info
         for stage, seconds in device.stage_seconds().items():
             statistics.add_time(stage, seconds)
     finally:

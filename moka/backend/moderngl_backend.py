@@ -73,7 +73,7 @@ class ModernGLBackend:
         multi_draw: bool = True,
     ) -> None:
         self._context = context
-        self._ctx = context.gl
+        self._ctx: Any = context.gl
         # Every object is released here, by its handle; the collector, which
         # may run on any thread, releases none.
         self._ctx.gc_mode = None
@@ -216,8 +216,8 @@ class ModernGLBackend:
         counters = self._execute(recording)
         spent = time.perf_counter() - start
         if self._read_seconds:
-            self._add_time("readback", self._read_seconds)
-        self._add_time(stage, spent - self._read_seconds)
+            self.add_time("readback", self._read_seconds)
+        self.add_time(stage, spent - self._read_seconds)
         self._read_seconds = 0.0
         return counters
 
@@ -249,6 +249,10 @@ class ModernGLBackend:
         texels: NDArray[Any] = self._get(handle).read(level, face)
         self._check_errors("read_texture")
         return texels
+
+    def add_time(self, stage: str, seconds: float) -> None:
+        """Count ``seconds`` for ``stage`` in :meth:`stage_seconds`."""
+        self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
 
     def stage_seconds(self) -> dict[str, float]:
         """See :class:`moka.backend.protocol.Backend`.
@@ -299,10 +303,7 @@ class ModernGLBackend:
         try:
             yield
         finally:
-            self._add_time(stage, time.perf_counter() - start)
-
-    def _add_time(self, stage: str, seconds: float) -> None:
-        self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
+            self.add_time(stage, time.perf_counter() - start)
 
     def _put(self, handle: Handle, resource: Any) -> None:
         self._resources[handle.kind, handle.index] = resource

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+import time
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -9,6 +10,9 @@ from moka.core.errors import MokaError, OptionError
 from moka.version import __version__
 
 __all__ = ["main"]
+
+# Where the clock of a run starts: before anything heavy is imported.
+STARTED = time.perf_counter()
 
 USER_ERROR = 2
 INTERNAL_ERROR = 1
@@ -32,6 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     debug = "--debug" in given
     try:
         parsed = _parser().parse_args(given)
+        parsed.started = STARTED
         return int(parsed.execute(parsed))
     except MokaError as error:
         return _fail(str(error), USER_ERROR, debug=debug)
@@ -52,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from moka.cli import doctor, info, render
+    from moka.cli import compare, doctor, info, render
 
     parser = _Parser(
         prog="moka",
@@ -68,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     for name, module in (
         ("render", render),
         ("info", info),
+        ("compare", compare),
         ("doctor", doctor),
     ):
         summary = (module.__doc__ or "").splitlines()[0]

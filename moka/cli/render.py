@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -141,7 +142,8 @@ def execute(arguments: argparse.Namespace) -> int:
     from moka.app.render import render_request
     from moka.core.statistics import Statistics, write_statistics
 
-    statistics = Statistics()
+    statistics = Statistics(arguments.started)
+    statistics.add_time("import", time.perf_counter() - arguments.started)
     suffixes = {path.suffix.lower() for path in outputs}
     picture = render_request(
         request,

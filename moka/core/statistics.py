@@ -21,11 +21,14 @@ __all__ = ["Statistics", "write_statistics"]
 
 
 class Statistics:
-    """Collects stage times in milliseconds and counters, from any thread."""
+    """Collects stage times in milliseconds and counters, from any thread.
 
-    def __init__(self) -> None:
+    The total counts from ``started``, a time of ``time.perf_counter``.
+    """
+
+    def __init__(self, started: float | None = None) -> None:
         self._lock = threading.Lock()
-        self._started = time.perf_counter()
+        self._started = time.perf_counter() if started is None else started
         self.stages_ms: dict[str, float] = {}
         self.counts: dict[str, int] = {}
         self.lighting: dict[str, Any] = {}
@@ -58,7 +61,7 @@ class Statistics:
 
     @property
     def total_ms(self) -> float:
-        """Milliseconds since this object was made."""
+        """Milliseconds since the start."""
         return 1000.0 * (time.perf_counter() - self._started)
 
     def as_dict(self) -> dict[str, Any]:

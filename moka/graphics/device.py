@@ -7,6 +7,7 @@ that one frame at most is in flight while the next is recorded.
 """
 
 import itertools
+import time
 import weakref
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -99,8 +100,11 @@ class GraphicsDevice:
             from moka.backend.contexts import open_context
             from moka.backend.moderngl_backend import ModernGLBackend
 
+            start = time.perf_counter()
             context = open_context(backend, device=device, debug=debug)
-            return ModernGLBackend(context, explain_log)
+            opened = ModernGLBackend(context, explain_log)
+            opened.add_time("context", time.perf_counter() - start)
+            return opened
 
         return cls(open_backend)
 

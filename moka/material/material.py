@@ -70,3 +70,18 @@ class Material:
     alpha_cutoff: float = 0.5
     double_sided: bool = False
     unlit: bool = False
+
+    @property
+    def textures(self) -> tuple[Texture, ...]:
+        """Its textures, whether or not they change the picture."""
+        return tuple(
+            texture
+            for texture in (
+                self.base_colour_texture,
+                self.metallic_roughness_texture,
+                self.normal_texture,
+                self.occlusion_texture,
+                self.emissive_texture,
+            )
+            if texture is not None
+        )

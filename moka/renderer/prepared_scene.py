@@ -81,6 +81,8 @@ class SceneMaterials:
             primitive.material or _DEFAULT_MATERIAL for primitive in primitives
         ]
         self.descriptions: list[MaterialDescription] = []
+        # By identity: embedded images need not be hashed to be left out.
+        self.sampled: set[int] = set()
         self.requests: list[dict[str, TextureRequest]] = []
         known: dict[
             tuple[Material, tuple[str, ...], object],
@@ -99,6 +101,9 @@ class SceneMaterials:
                         use.slot: textures.request(use.slot, slots[use.slot])
                         for use in description.textures
                     },
+                )
+                self.sampled.update(
+                    id(slots[use.slot].image) for use in description.textures
                 )
             description, requests = known[key]
             self.descriptions.append(description)

@@ -188,6 +188,15 @@ class Renderer:
                 scene.drawables.primitives, self._textures
             )
             self._materials_key = key
+            images = {
+                id(texture.image)
+                for model in scene.models
+                for material in model.model.materials
+                for texture in material.textures
+            }
+            self.statistics.set_count(
+                "textures_skipped", len(images - self._materials.sampled)
+            )
         return self._materials
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
