@@ -28,6 +28,7 @@ ORDER = (
     "graphics",
     "backend",
     "commands",
+    "radiometry",
     "core",
     "version",
 )
