@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from moka.core.maths import Array, forward_directions
+from moka.core.radiometry import NARROWEST_CONE_EDGE
 from moka.model.lights import LightKind, PunctualLight
 from moka.scene.transform import Transform
 
@@ -39,10 +40,6 @@ LIGHT = np.dtype(
 
 # A range of which the inverse still is a float32.
 _SHORTEST = 1e-30
-
-# The narrowest edge of a cone, as a difference of cosines: the extension's
-# own limit.
-_NARROWEST = 0.001
 
 
 class Light:
@@ -83,7 +80,7 @@ def pack_lights(
     inner = np.cos([light.inner_cone_angle for light in lights])
     outer = np.cos([light.outer_cone_angle for light in lights])
     spot = kind == LightKind.SPOT.value
-    scale = 1 / np.maximum(_NARROWEST, inner - outer)
+    scale = 1 / np.maximum(NARROWEST_CONE_EDGE, inner - outer)
     rows["position"] = _single(world[:, :3, 3] - np.asarray(origin))
     rows["positional"] = kind != LightKind.DIRECTIONAL.value
     rows["direction"] = forward_directions(world)
