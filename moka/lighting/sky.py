@@ -80,7 +80,7 @@ _SUN_RADIUS = math.radians(0.2665)
 _GROUND_ALBEDO = np.array([0.29, 0.25, 0.20])
 
 #: Towards the horizon haze covers the ground, by this angle to 1 / e.
-_HAZE = math.radians(3.0)
+_HAZE = math.radians(1.5)
 
 #: A white horizontal surface under sun and sky has this radiance.
 _WHITE = 1.4
