@@ -1,0 +1,1 @@
+"""What a program runs: App and its loop, a window, one picture."""

@@ -1,0 +1,1 @@
+"""Executes recordings: the protocol, ModernGL, and one on paper."""

@@ -9,7 +9,7 @@ import contextlib
 import time
 from collections.abc import Callable, Iterator
 from ctypes import byref, c_float
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +73,7 @@ class ModernGLBackend:
         multi_draw: bool = True,
     ) -> None:
         self._context = context
-        self._ctx: Any = context.gl
+        self._ctx = cast(Any, context.gl)
         # Every object is released here, by its handle; the collector, which
         # may run on any thread, releases none.
         self._ctx.gc_mode = None

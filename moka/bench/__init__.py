@@ -1,0 +1,1 @@
+"""Measurements: pictures compared, times, errors against truth."""

@@ -42,7 +42,7 @@ class ParameterType(Enum):
     @property
     def glsl(self) -> str:
         """The type's name in GLSL."""
-        return self.value[0]
+        return str(self.value[0])
 
     @property
     def is_matrix(self) -> bool:

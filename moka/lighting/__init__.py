@@ -1,0 +1,1 @@
+"""Environments, suns, and what is preintegrated of them."""
