@@ -10,6 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from moka.core.solid_angle import (
+    equirectangular_texel_solid_angles as solid_angles,
+)
+
 __all__ = [
     "direction_to_uv",
     "mean_radiance",
@@ -52,17 +56,6 @@ def texel_directions(height: int, width: int) -> NDArray[np.float64]:
     directions[:, :, 1] = np.cos(polar)
     directions[:, :, 2] = np.sin(polar) * np.sin(azimuth)
     return directions
-
-
-def solid_angles(height: int, width: int) -> NDArray[np.float64]:
-    """Solid angles (H, W) of a map's texels in steradians, exactly.
-
-    They are those between two parallels and two meridians, and sum to 4 pi.
-    The array is read-only: all texels of a row share one value.
-    """
-    edges = np.cos(np.linspace(0.0, np.pi, height + 1))
-    rows = (edges[:-1] - edges[1:]) * (2.0 * np.pi / width)
-    return np.broadcast_to(rows[:, np.newaxis], (height, width))
 
 
 def mean_radiance(pixels: NDArray[np.floating[Any]]) -> NDArray[np.float64]:

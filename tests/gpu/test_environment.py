@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from moka.core.solid_angle import cube_texel_solid_angles
 from moka.lighting.samples import cosine_samples, ggx_prefilter_samples, pack
 from tests.support.gpu import gpu
 from tests.support.oracles import environment as oracle
@@ -123,7 +124,7 @@ def test_directions_of_cube_faces():
 
 def test_solid_angles_of_cube_texels():
     size = 64
-    exact = oracle.cube_solid_angles(size)
+    exact = cube_texel_solid_angles(size)
     assert 6.0 * exact.sum() == pytest.approx(4.0 * np.pi)
     centre = (np.arange(size) + 0.5) / size * 2.0 - 1.0
     x, y = (a.ravel() for a in np.meshgrid(centre, centre))
@@ -210,7 +211,7 @@ def test_a_sun_of_one_texel_keeps_its_flux(
         {"environment_map": gpu().texture(image)},
         subdivisions=subdivisions,
     )
-    flux = np.einsum("fyxc,yx->c", cube, oracle.cube_solid_angles(size))
+    flux = np.einsum("fyxc,yx->c", cube, cube_texel_solid_angles(size))
     solid_angles = oracle.equirectangular_solid_angles(width, height)
     expected = 1e5 * solid_angles[row, column]
     # Where half floats end is where a texel would, too.
@@ -226,12 +227,12 @@ def test_a_level_is_the_mean_of_the_texels_it_covers():
         8,
         {"environment_cube": gpu().cube(fine, mipmaps=False)},
     )
-    weights = oracle.cube_solid_angles(16)[None, :, :, None]
+    weights = cube_texel_solid_angles(16)[None, :, :, None]
     weighted = (fine[..., :3] * weights).reshape(6, 8, 2, 8, 2, 3)
     total = weights.reshape(1, 8, 2, 8, 2, 1).sum(axis=(2, 4))
     expected = weighted.sum(axis=(2, 4)) / total
     assert np.abs(coarse - expected).max() < 1e-3
-    mean = np.einsum("fyxc,yx->c", coarse, oracle.cube_solid_angles(8))
+    mean = np.einsum("fyxc,yx->c", coarse, cube_texel_solid_angles(8))
     assert mean == pytest.approx(weighted.sum(axis=(0, 1, 2, 3, 4)), rel=1e-4)
 
 
@@ -308,7 +309,7 @@ def test_a_sun_of_one_texel_makes_no_fireflies():
     assert step < 0.3
     light = convolve(cube, count=256, size=16)[2, :, :, 0]
     assert np.abs(np.diff(light, axis=1)).max() / light.max() < 0.2
-    expected = 1e6 / np.pi * oracle.cube_solid_angles(64)[20, 40]
+    expected = 1e6 / np.pi * cube_texel_solid_angles(64)[20, 40]
     assert light.max() == pytest.approx(expected, rel=0.1)
 
 

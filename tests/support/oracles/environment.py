@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.core.solid_angle import equirectangular_texel_solid_angles
 from tests.support.oracles.directions import gauss_legendre, spherical
 
 Array = NDArray[np.float64]
@@ -29,9 +30,7 @@ def equirectangular_directions(width: int, height: int) -> Array:
 
 def equirectangular_solid_angles(width: int, height: int) -> Array:
     """The exact solid angle of each texel, (height, width); sum 4 pi."""
-    edges = np.cos(np.arange(height + 1) / height * np.pi)
-    rows = (edges[:-1] - edges[1:]) * 2.0 * np.pi / width
-    return np.repeat(rows[:, None], width, axis=1)
+    return equirectangular_texel_solid_angles(height, width)
 
 
 def cube_face(directions: Array) -> tuple[NDArray[np.intp], Array]:
@@ -44,14 +43,6 @@ def cube_face(directions: Array) -> tuple[NDArray[np.intp], Array]:
     t = np.choose(face, (-y, -y, z, -z, -y, -y))
     both = np.stack((s, t), axis=-1) / np.abs(major)[..., None]
     return face, (both + 1.0) / 2.0
-
-
-def cube_solid_angles(size: int) -> Array:
-    """The exact solid angle of each texel of a face, (size, size)."""
-    edge = np.linspace(-1.0, 1.0, size + 1)
-    x, y = np.meshgrid(edge, edge)
-    corner = np.arctan2(x * y, np.sqrt(x * x + y * y + 1.0))
-    return corner[1:, 1:] - corner[:-1, 1:] - corner[1:, :-1] + corner[:-1, :-1]
 
 
 def irradiance_over_pi(

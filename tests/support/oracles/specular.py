@@ -78,25 +78,6 @@ def schlick(cosine: ArrayLike, f0: ArrayLike, f90: ArrayLike = 1.0) -> Array:
     return f0 + (f90 - f0) * (1.0 - np.asarray(cosine)) ** 5
 
 
-def fresnel_dielectric(cosine: ArrayLike, ior: float) -> Array:
-    """Fresnel's equations for unpolarised light out of a vacuum."""
-    incident = np.asarray(cosine)
-    refracted = np.sqrt(1.0 - (1.0 - incident**2) / ior**2)
-    s = (incident - ior * refracted) / (incident + ior * refracted)
-    p = (ior * incident - refracted) / (ior * incident + refracted)
-    return (s**2 + p**2) / 2.0
-
-
-def fresnel_conductor(cosine: ArrayLike, eta: float, k: float) -> Array:
-    """The same for a complex index of refraction eta - i k."""
-    incident = np.asarray(cosine, complex)
-    index = complex(eta, -k)
-    refracted = np.sqrt(1.0 - (1.0 - incident**2) / index**2)
-    s = (incident - index * refracted) / (incident + index * refracted)
-    p = (index * incident - refracted) / (index * incident + refracted)
-    return (np.abs(s) ** 2 + np.abs(p) ** 2) / 2.0
-
-
 def table_of_microfacets(
     n_dot_v: ArrayLike,
     roughness: ArrayLike,
