@@ -17,6 +17,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "moka"
 # A package may import those after it, and itself.
 ORDER = (
     "cli",
+    "survey",
     "bench",
     "ui",
     "app",
@@ -37,14 +38,16 @@ ORDER = (
 ONLY_IMPORTERS = {
     "OpenEXR": ("moka.core.*",),
     "PIL": ("moka.core.*",),
+    "flip_evaluator": ("moka.bench.*",),
     "glcontext": ("moka.backend.*",),
     "glfw": ("moka.app.window*", "moka.backend.contexts*"),
     "imgui_bundle": ("moka.ui.*",),
-    "matplotlib": ("moka.bench.*",),
+    "matplotlib": ("moka.bench.*", "moka.survey.*"),
     "moderngl": ("moka.backend.*",),
     "moderngl_window": ("moka.app.window*", "moka.backend.contexts*"),
     "msgspec": ("moka.model.*",),
     "pygltflib": ("moka.model.*",),
+    "scipy": ("moka.bench.*", "moka.survey.*"),
 }
 
 
