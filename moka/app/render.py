@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from moka.scene.camera import Camera
     from moka.scene.scene import Scene
 
-__all__ = ["Picture", "RenderRequest", "render", "render_request"]
+__all__ = ["RenderRequest", "render", "render_request"]
 
 LARGEST_SIDE = 16384
 
@@ -48,18 +48,6 @@ class RenderRequest:
     size: tuple[int, int] = (1280, 720)
     settings: RenderSettings = field(default_factory=RenderSettings)
     backend: str = "auto"
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """What came back from the GPU, top row first; None if not asked for.
-
-    ``pixels`` is float32 (H, W, 4) linear radiance, premultiplied;
-    ``display`` uint8 (H, W, 4), tone mapped and sRGB-encoded.
-    """
-
-    pixels: NDArray[np.float32] | None
-    display: NDArray[np.uint8] | None
 
 
 def render(
@@ -112,7 +100,7 @@ def render(
         multiscatter=multiscatter,
         float_output=True,
     )
-    picture = render_request(
+    return render_request(
         RenderRequest(
             source,
             environment,
@@ -128,13 +116,6 @@ def render(
         want_pixels=True,
         want_display=True,
     )
-    assert picture.pixels is not None
-    return Image(
-        picture.pixels,
-        tone_map=tone_map,
-        exposure=exposure,
-        display=picture.display,
-    )
 
 
 def render_request(
@@ -144,8 +125,12 @@ def render_request(
     want_pixels: bool,
     want_display: bool,
     debug: bool = False,
-) -> Picture:
-    """Make the picture of ``request``; see :func:`render` for its errors."""
+) -> Image:
+    """Make the picture of ``request``; see :func:`render` for its errors.
+
+    Only what is wanted is read back: linear ``pixels``, the tone mapped
+    ``display`` bytes, or both.
+    """
     _check_size(request.size)
     with ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader:
         environment = reader.submit(_load_environment, request, statistics)
@@ -170,7 +155,7 @@ def _render_with(
     *,
     want_pixels: bool,
     want_display: bool,
-) -> Picture:
+) -> Image:
     from moka.commands.command_list import CommandList
     from moka.renderer.renderer import Renderer
     from moka.scene.scene import Scene
@@ -210,9 +195,15 @@ def _render_with(
     if radiance is not None:
         assert radiance.data is not None
         pixels = _over_background(radiance.data[::-1], scene.background)
-    return Picture(
+    shown = None
+    if display is not None:
+        assert display.data is not None
+        shown = np.ascontiguousarray(display.data[::-1])
+    return Image(
         pixels,
-        None if display is None or display.data is None else display.data[::-1],
+        tone_map=request.settings.tone_map,
+        exposure=request.settings.exposure,
+        display=shown,
     )
 
 

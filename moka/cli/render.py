@@ -138,14 +138,13 @@ def execute(arguments: argparse.Namespace) -> int:
     _check_outputs(outputs, arguments.stats)
     request = _request(arguments, outputs)
 
-    from moka.app.outputs import write_outputs
     from moka.app.render import render_request
     from moka.core.statistics import Statistics, write_statistics
 
     statistics = Statistics(arguments.started)
     statistics.add_time("import", time.perf_counter() - arguments.started)
     suffixes = {path.suffix.lower() for path in outputs}
-    picture = render_request(
+    image = render_request(
         request,
         statistics,
         want_pixels=".exr" in suffixes,
@@ -153,7 +152,7 @@ def execute(arguments: argparse.Namespace) -> int:
         debug=arguments.debug,
     )
     with statistics.stage("encode"):
-        write_outputs(picture, outputs, half=arguments.half)
+        image.save_all(outputs, half=arguments.half)
     if arguments.stats:
         write_statistics(statistics, arguments.stats)
     return 0

@@ -194,6 +194,7 @@ class Renderer:
                 for material in model.model.materials
                 for texture in material.textures
             }
+            self.statistics.count("textures_loaded", 0)
             self.statistics.set_count(
                 "textures_skipped", len(images - self._materials.sampled)
             )
