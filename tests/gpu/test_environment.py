@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from moka.core.solid_angle import cube_texel_solid_angles
-from moka.lighting.samples import cosine_samples, ggx_prefilter_samples, pack
+from moka.lighting.samples import ggx_prefilter_samples, pack
+from tests.support.cube_passes import (
+    convolve,
+    draw_cube,
+    prefilter,
+    smooth,
+    texel_directions,
+)
 from tests.support.gpu import gpu
 from tests.support.oracles import environment as oracle
 from tests.support.oracles.directions import random_directions
@@ -15,58 +22,6 @@ AXES = np.array(
     [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
     dtype=float,
 )
-
-
-def cube_face_block(face, size, *, subdivisions=1, source_lod=0.0) -> bytes:
-    integers = np.array([face, size, subdivisions], np.int32)
-    return integers.tobytes() + np.float32(source_lod).tobytes()
-
-
-def draw_cube(name, size, textures, *, defines=None, blocks=None, **block):
-    """The six faces (6, size, size, 3) that pass ``name`` draws."""
-    return np.stack(
-        [
-            gpu().draw(
-                name,
-                (size, size),
-                defines=defines or {},
-                textures=textures,
-                blocks={
-                    "CubeFace": cube_face_block(face, size, **block),
-                    **(blocks or {}),
-                },
-            )[..., :3]
-            for face in range(6)
-        ]
-    )
-
-
-def texel_directions(size: int) -> np.ndarray:
-    """Unit vectors (6, size, size, 3): the inverse of OpenGL's table.
-
-    Found as those that the oracle's table maps to each texel's centre.
-    """
-    centre = (np.arange(size) + 0.5) / size * 2.0 - 1.0
-    b, a = np.meshgrid(centre, centre, indexing="ij")
-    one = np.ones_like(a)
-    faces = np.stack(
-        [
-            np.stack(vector, axis=-1)
-            for vector in (
-                (one, -b, -a),
-                (-one, -b, a),
-                (a, one, b),
-                (a, -one, -b),
-                (a, -b, one),
-                (-a, -b, -one),
-            )
-        ]
-    )
-    directions = faces / np.linalg.norm(faces, axis=-1, keepdims=True)
-    face, uv = oracle.cube_face(directions)
-    assert (face == np.arange(6)[:, None, None]).all()
-    assert np.abs(uv * 2.0 - 1.0 - np.stack((a, b), axis=-1)).max() < 1e-12
-    return directions
 
 
 def test_the_six_axes_in_an_equirectangular_map():
@@ -147,12 +102,6 @@ def test_turning_is_counter_clockwise_seen_from_above():
     )
     expected = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
     assert np.abs(turned - expected).max() < 1e-7
-
-
-def smooth(d: np.ndarray) -> np.ndarray:
-    """Radiance that tells all directions apart."""
-    x, y, z = np.moveaxis(d, -1, 0)
-    return np.stack((1.0 + x, 1.0 + y * z, 2.0 + z), axis=-1)
 
 
 def test_a_map_becomes_a_cube_without_seams():
@@ -241,30 +190,6 @@ def smooth_cube():
     faces = smooth(texel_directions(64))
     alpha = np.ones((6, 64, 64, 1))
     return gpu().cube(np.concatenate((faces, alpha), axis=-1), mipmaps=True)
-
-
-def prefilter(cube, roughness, count=256, size=8):
-    return draw_cube(
-        "prefilter_specular.frag",
-        size,
-        {"environment_cube": cube},
-        defines={"MOKA_SAMPLE_COUNT": count},
-        blocks={
-            "PrefilterSamples": pack(
-                ggx_prefilter_samples(roughness, count, 64), count
-            )
-        },
-    )
-
-
-def convolve(cube, count=256, size=8):
-    return draw_cube(
-        "prefilter_irradiance.frag",
-        size,
-        {"environment_cube": cube},
-        defines={"MOKA_SAMPLE_COUNT": count},
-        blocks={"PrefilterSamples": pack(cosine_samples(count, 64), count)},
-    )
 
 
 @pytest.mark.parametrize("roughness", [0.0, 0.1, 0.5, 1.0])
