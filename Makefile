@@ -29,8 +29,17 @@ types: $(VENV)/.dev
 docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
+# Against a script that does the same with bare ModernGL and nothing else:
+# make bench MODEL=helmet.gltf ENVIRONMENT=sky.hdr
 bench: $(VENV)/.bench
-	$(BIN)/python -m pytest tests/benchmarks $(ARGS)
+	@test -n "$(MODEL)" -a -n "$(ENVIRONMENT)" || \
+	    { echo "usage: make bench MODEL=file.gltf ENVIRONMENT=map.hdr"; false; }
+	@mkdir -p build
+	$(BIN)/python tests/benchmarks/compare.py $(ARGS) \
+	    --name moka "$(BIN)/moka render $(MODEL) --size 1024x1024 \
+	        --environment $(ENVIRONMENT) -o build/moka.png" \
+	    --name bare "$(BIN)/python tests/benchmarks/bare_moderngl.py \
+	        $(MODEL) $(ENVIRONMENT) --size 1024x1024 -o build/bare.png"
 
 # One stamp per set of extras; `pip` runs again only when the project file or
 # the way to set up has changed.
