@@ -115,7 +115,8 @@ def _blurred(values: Array, *, axis: int, mode: Any) -> Array:
         np.take(padded, np.arange(start, start + count), axis)
         for start in (0, 2)
     )
-    return 0.75 * values + 0.125 * (before + after)
+    mean: Array = 0.75 * values + 0.125 * (before + after)
+    return mean
 
 
 def _cell_size(height: int, width: int) -> int:

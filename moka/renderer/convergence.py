@@ -1,0 +1,120 @@
+"""When sampling may stop: batches, tiles and their errors; no GPU here."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TILE", "Convergence", "Schedule", "rectangles"]
+
+#: Pixels along the edge of a tile: enough of them that the error of the
+#: error averages out, small against an object.
+TILE = 32
+
+# A frame this long still lets a window answer; a batch this long has most of
+# what a low-discrepancy sequence gives over random numbers.
+_FRAME_SAMPLES = 8
+_BATCH_SAMPLES = 32
+_FEWEST_BATCHES = 16
+
+# The spread of fewer batches says too little to stop by.
+_BATCHES_TO_TRUST = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """``batches`` runs of ``frames``, each frame with ``samples`` a pixel."""
+
+    samples: int
+    frames: int
+    batches: int
+
+    @classmethod
+    def of(cls, total: int) -> "Schedule":
+        """At least ``total`` samples a pixel, in several batches."""
+        batch = min(max(total // _FEWEST_BATCHES, 1), _BATCH_SAMPLES)
+        frames = -(-batch // _FRAME_SAMPLES)
+        samples = -(-batch // frames)
+        return cls(samples, frames, -(-total // (samples * frames)))
+
+    @property
+    def total_frames(self) -> int:
+        """Frames until everything is sampled."""
+        return self.frames * self.batches
+
+
+class Convergence:
+    """Which tiles, a grid (rows, columns), are to be sampled on.
+
+    Without ``max_error`` all of them are, for as long as frames come.
+    ``active`` is bool (rows, columns), the bottom row first. ``error`` is
+    the largest of a tile, the root of the mean square of its pixels'
+    relative standard errors; None before there are two batches.
+    ``mean_batches`` is the mean over pixels.
+    """
+
+    def __init__(self, tiles: tuple[int, int], max_error: float | None) -> None:
+        self.active = np.ones(tiles, np.bool_)
+        self.error: float | None = None
+        self.mean_batches = 0.0
+        self._max_error = max_error
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether every tile's error is small enough."""
+        return not self.active.any()
+
+    def update(self, report: NDArray[np.floating[Any]]) -> None:
+        """Take in what ``tile_error.frag`` says, (rows, columns, 4).
+
+        A tile that has converged stays so: it is no longer sampled.
+        """
+        square, batches, pixels, _ = np.moveaxis(
+            np.asarray(report, np.float64), -1, 0
+        )
+        self.mean_batches = float(np.average(batches, weights=pixels))
+        if batches.min() < 2:
+            return
+        errors = np.sqrt(square)
+        self.error = float(errors.max())
+        if self._max_error is not None:
+            self.active &= (errors > self._max_error) | (
+                batches < _BATCHES_TO_TRUST
+            )
+
+
+def rectangles(
+    tiles: NDArray[np.bool_], size: tuple[int, int]
+) -> list[tuple[int, int, int, int]]:
+    """Disjoint (x, y, width, height) in pixels that cover the true tiles.
+
+    ``size`` is the picture's width and height, which cuts the last tiles.
+    Runs in a row are joined, and with equal runs of the rows before.
+    """
+    open_runs: dict[tuple[int, int], int] = {}
+    found: list[tuple[int, int, int, int]] = []
+    rows = len(tiles)
+    for row in range(rows + 1):
+        runs = _runs(tiles[row]) if row < rows else []
+        for run in [run for run in open_runs if run not in runs]:
+            found += [(run[0], open_runs.pop(run), run[1], row)]
+        for run in runs:
+            open_runs.setdefault(run, row)
+    width, height = size
+    return [
+        (
+            left * TILE,
+            bottom * TILE,
+            min(right * TILE, width) - left * TILE,
+            min(top * TILE, height) - bottom * TILE,
+        )
+        for left, bottom, right, top in found
+    ]
+
+
+def _runs(row: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Starts and ends of the runs of true values."""
+    padded = np.concatenate(([False], row, [False]))
+    edges = np.flatnonzero(padded[1:] != padded[:-1])
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -1,0 +1,30 @@
+// Low-discrepancy sequences that are randomised per pixel.
+//
+// Kronecker sequences with the powers of a generalised golden ratio as
+// steps: Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
+// Sequences". In fixed point they cost a multiplication a dimension and
+// lose nothing however long they run. Each pixel starts elsewhere: Cranley
+// and Patterson 1976, "Randomization of Number Theoretic Methods for
+// Multiple Integration", which keeps estimates unbiased and independent.
+
+// Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg4d.
+uvec4 hash(uvec4 v) {
+    v = v * 1664525u + 1013904223u;
+    v += v.yzxy * v.wxyz;
+    v ^= v >> 16u;
+    v += v.yzxy * v.wxyz;
+    return v;
+}
+
+// 0 to 1, without 1: a float holds 24 bits.
+vec2 unit_point(uvec2 bits) { return vec2(bits >> 8u) / 16777216.0; }
+vec3 unit_point(uvec3 bits) { return vec3(bits >> 8u) / 16777216.0; }
+
+vec2 sequence(uint index, uvec2 start) {
+    return unit_point(index * uvec2(0xC13FA9A9u, 0x91E10DA6u) + start);
+}
+
+vec3 sequence(uint index, uvec3 start) {
+    return unit_point(
+        index * uvec3(0xD1B54A33u, 0xABC98389u, 0x8CB92BA7u) + start);
+}
