@@ -100,12 +100,19 @@ CULL = {CullMode.BACK: BACK, CullMode.FRONT: FRONT}
 _ONE = 1
 _SRC_ALPHA = 0x0302
 _ONE_MINUS_SRC_ALPHA = 0x0303
+_ONE_MINUS_DST_ALPHA = 0x0305
 BLEND_FACTORS = {
     BlendState.PREMULTIPLIED: (
         _ONE,
         _ONE_MINUS_SRC_ALPHA,
         _ONE,
         _ONE_MINUS_SRC_ALPHA,
+    ),
+    BlendState.UNDER: (
+        _ONE_MINUS_DST_ALPHA,
+        _ONE,
+        _ONE_MINUS_DST_ALPHA,
+        _ONE,
     ),
     BlendState.ALPHA: (
         _SRC_ALPHA,

@@ -297,9 +297,13 @@ class CompareFunction(Enum):
 
 
 class BlendState(Enum):
-    """How a fragment is combined with what is there; alpha is coverage."""
+    """How a fragment is combined with what is there; alpha is coverage.
+
+    PREMULTIPLIED puts it over, UNDER behind what is there.
+    """
 
     PREMULTIPLIED = "premultiplied"
+    UNDER = "under"
     ALPHA = "alpha"
     ADDITIVE = "additive"
 

@@ -23,6 +23,7 @@ from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
 from moka.lighting.preintegration import (
     CUBE_SAMPLER,
+    MAP_SAMPLER,
     TABLE_SAMPLER,
     EnvironmentMaps,
 )
@@ -41,6 +42,7 @@ from moka.renderer.textures import TexturePool, TextureRequest
 
 __all__ = [
     "LAYER_BACKGROUND",
+    "LAYER_RESOLVE",
     "PreparedScene",
     "SceneMaterials",
     "SharedBindings",
@@ -51,6 +53,7 @@ LAYER_OPAQUE = 0
 LAYER_MASK = 1
 LAYER_BACKGROUND = 2
 LAYER_BLENDED = 3
+LAYER_RESOLVE = 4
 
 _DEFAULT_MATERIAL = Material(name="glTF default")
 
@@ -207,6 +210,7 @@ class PreparedScene:
         self.handles = frozenset((*surfaces, *meshes, *self._groups.values()))
         self.program_count = len(set(surfaces))
         self.permutation_count = len(set(permutations))
+        self.is_lit = materials.has_lit
 
     def destroy(self) -> None:
         """Destroy what it owns; meshes and textures belong to pools."""
@@ -237,11 +241,15 @@ class PreparedScene:
             UniformBinding("Materials", page),
         ]
         if Feature.UNLIT not in permutation.material.features:
+            maps = shared.maps
+            sampled_map = maps.map if maps.importance is not None else None
             bound += [
                 TextureBinding(name, handle, sampler)
                 for name, handle, sampler in (
                     ("specular_cube", shared.maps.specular, CUBE_SAMPLER),
                     ("irradiance_cube", shared.maps.irradiance, CUBE_SAMPLER),
+                    ("importance_table", shared.maps.importance, MAP_SAMPLER),
+                    ("environment_map", sampled_map, MAP_SAMPLER),
                     ("brdf_table", shared.table, TABLE_SAMPLER),
                 )
                 if handle is not None

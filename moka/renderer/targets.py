@@ -33,6 +33,11 @@ class Targets:
     display: Handle
     resources: tuple[Handle, ...]
 
+    @property
+    def is_multisampled(self) -> bool:
+        """Whether there is something to resolve."""
+        return self.scene != self.resolved
+
     def destroy(self, device: GraphicsDevice) -> None:
         """Destroy all of it."""
         device.destroy(*self.resources)
