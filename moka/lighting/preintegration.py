@@ -7,6 +7,7 @@ of the lobe. Each of them is made only when something asks for it. The cost
 is measured by the statistics stage ``environment``.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -44,7 +45,7 @@ from moka.lighting.samples import (
 )
 
 if TYPE_CHECKING:
-    from moka.lighting.environment import Environment
+    from moka.lighting.suns import SplitEnvironment
 
 __all__ = [
     "CUBE_SAMPLER",
@@ -53,6 +54,7 @@ __all__ = [
     "EnvironmentMaps",
     "Preintegrator",
     "cube_size",
+    "level_roughness",
     "specular_level_count",
 ]
 
@@ -92,16 +94,23 @@ _CUBE_FACE = UniformLayout(
 class EnvironmentMaps:
     """What is there of one environment; None where nothing asked for it.
 
-    ``map`` is the equirectangular map, ``specular`` the prefiltered cube,
-    level ``roughness * (specular_levels - 1)`` for a roughness,
-    ``irradiance`` a cube of E / pi.
+    ``map`` is the equirectangular map with its suns, ``specular`` the
+    prefiltered cube, whose level 0 is the mirror image of that map and
+    whose other levels, of :func:`level_roughness`, lack the suns.
+    ``irradiance`` is a cube of E / pi, without them too.
     """
 
     map: Handle | None = None
     specular: Handle | None = None
     specular_levels: int = 1
     irradiance: Handle | None = None
+    importance: Handle | None = None
     resources: list[Handle] = field(default_factory=list)
+
+    @property
+    def lights_surfaces(self) -> bool:
+        """Whether surfaces reflect the environment."""
+        return self.specular is not None or self.importance is not None
 
     def destroy(self, device: GraphicsDevice) -> None:
         """Destroy all of it."""
@@ -115,13 +124,22 @@ def cube_size(map_height: int) -> int:
     As many to the right angle as the map has at its equator, rounded up to
     a power of two.
     """
-    texels = max(map_height / 2, SMALLEST_SPECULAR)
+    # At least two levels: a mirror image, and one for all rough surfaces.
+    texels = max(map_height / 2, 2 * SMALLEST_SPECULAR)
     return min(LARGEST_CUBE, 1 << int(np.ceil(np.log2(texels))))
 
 
 def specular_level_count(size: int) -> int:
     """Levels of a prefiltered cube of ``size``; the last is roughness 1."""
     return max(1, (size // SMALLEST_SPECULAR).bit_length())
+
+
+def level_roughness(level: int, levels: int) -> float:
+    """The roughness that level ``level`` of ``levels`` is filtered for.
+
+    The inverse of ``specular_level`` in ``include/lighting.glsl``.
+    """
+    return 1.0 - math.sqrt(1.0 - level / max(1, levels - 1))
 
 
 class Preintegrator:
@@ -160,18 +178,22 @@ class Preintegrator:
 
     def prepare(
         self,
-        environment: "Environment",
+        environment: "SplitEnvironment",
         *,
         background: bool,
         specular: bool,
         irradiance: bool,
     ) -> EnvironmentMaps:
-        """Make what is asked for of ``environment``'s base map."""
+        """Make what is asked for of ``environment``.
+
+        ``irradiance`` asks for a cube of it.
+        """
         maps = EnvironmentMaps()
-        pixels = environment.pixels
+        pixels = environment.full
         is_uniform = pixels.shape[:2] == (1, 1)
         if background or ((specular or irradiance) and not is_uniform):
-            maps.map = self._upload_map(pixels, maps)
+            maps.map = self._upload_map(pixels)
+            maps.resources.append(maps.map)
         if is_uniform:
             # Every direction is alike: one texel a face says it all.
             if specular or irradiance:
@@ -184,27 +206,32 @@ class Preintegrator:
         assert maps.map is not None
         size = cube_size(len(pixels))
         jobs = _Jobs(self._device, self._passes)
-        source = self._make_cube(jobs, maps.map, pixels, size)
+        has_suns = environment.base is not pixels
+        base = (
+            jobs.scratch(self._upload_map(environment.base))
+            if has_suns
+            else maps.map
+        )
+        height = len(pixels)
+        source = self._make_cube(jobs, base, height, size)
         if specular:
             maps.specular_levels = specular_level_count(size)
-            maps.specular = self._prefilter(jobs, source, size, maps)
+            maps.specular = self._prefilter(
+                jobs, source, size, maps, height if has_suns else 0
+            )
         if irradiance:
             maps.irradiance = self._convolve(jobs, source, size, maps)
         jobs.run()
         return maps
 
-    def _upload_map(
-        self, pixels: NDArray[np.float32], maps: EnvironmentMaps
-    ) -> Handle:
+    def _upload_map(self, pixels: NDArray[np.float32]) -> Handle:
         height, width = pixels.shape[:2]
-        texture = self._device.create_texture(
+        return self._device.create_texture(
             TextureDescriptor(
                 PixelFormat.RGB32F, width, height, label="environment map"
             ),
             [pixels],
         )
-        maps.resources.append(texture)
-        return texture
 
     def _uniform_cube(
         self, radiance: NDArray[np.float32], maps: EnvironmentMaps
@@ -221,23 +248,13 @@ class Preintegrator:
         self,
         jobs: "_Jobs",
         map_texture: Handle,
-        pixels: NDArray[np.float32],
+        map_height: int,
         size: int,
     ) -> Handle:
         """The environment as a cube map with box-filtered levels."""
         levels = size.bit_length()
         cube = jobs.scratch_cube(size, levels)
-        # A cube texel of a large map covers several of its texels.
-        subdivisions = max(2, -(-len(pixels) // (2 * size)))
-        jobs.cube_level(
-            "equirectangular_to_cube.frag",
-            {},
-            cube,
-            0,
-            size,
-            TextureBinding("environment_map", map_texture, MAP_SAMPLER),
-            subdivisions=subdivisions,
-        )
+        jobs.map_to_cube(map_texture, map_height, cube, size)
         for level in range(1, levels):
             jobs.cube_level(
                 "downsample_cube.frag",
@@ -252,15 +269,28 @@ class Preintegrator:
         return cube
 
     def _prefilter(
-        self, jobs: "_Jobs", source: Handle, size: int, maps: EnvironmentMaps
+        self,
+        jobs: "_Jobs",
+        source: Handle,
+        size: int,
+        maps: EnvironmentMaps,
+        map_height: int,
     ) -> Handle:
+        """The levels; level 0 from the map, of ``map_height`` if it differs.
+
+        A mirror shows the suns. The rougher levels lack them: there a sun is
+        a light, in the measure in which these levels are read.
+        """
         levels = maps.specular_levels
         cube = self._device.create_texture(
             TextureDescriptor(CUBE_FORMAT, size, size, TextureKind.CUBE, levels)
         )
         maps.resources.append(cube)
-        for level in range(levels):
-            roughness = level / max(1, levels - 1)
+        if map_height:
+            assert maps.map is not None
+            jobs.map_to_cube(maps.map, map_height, cube, size)
+        for level in range(1 if map_height else 0, levels):
+            roughness = level_roughness(level, levels)
             count = min(
                 SPECULAR_SAMPLES << max(0, level - 1), MOST_SPECULAR_SAMPLES
             )
@@ -313,13 +343,36 @@ class _Jobs:
         self._commands = CommandList()
         self._scratch: list[Handle] = []
 
+    def scratch(self, resource: Handle) -> Handle:
+        """``resource``, which lives until :meth:`run`."""
+        self._scratch.append(resource)
+        return resource
+
     def scratch_cube(self, size: int, levels: int) -> Handle:
         """A cube map that lives until :meth:`run`."""
-        cube = self._device.create_texture(
-            TextureDescriptor(CUBE_FORMAT, size, size, TextureKind.CUBE, levels)
+        return self.scratch(
+            self._device.create_texture(
+                TextureDescriptor(
+                    CUBE_FORMAT, size, size, TextureKind.CUBE, levels
+                )
+            )
         )
-        self._scratch.append(cube)
-        return cube
+
+    def map_to_cube(
+        self, map_texture: Handle, map_height: int, cube: Handle, size: int
+    ) -> None:
+        """Resample a map of ``map_height`` rows into level 0 of ``cube``."""
+        # A cube texel of a large map covers several of its texels.
+        subdivisions = max(2, -(-map_height // (2 * size)))
+        self.cube_level(
+            "equirectangular_to_cube.frag",
+            {},
+            cube,
+            0,
+            size,
+            TextureBinding("environment_map", map_texture, MAP_SAMPLER),
+            subdivisions=subdivisions,
+        )
 
     def cube_level(
         self,
@@ -391,6 +444,4 @@ class _Jobs:
         )
 
     def _keep(self, create: Callable[[Any], Handle], descriptor: Any) -> Handle:
-        handle = create(descriptor)
-        self._scratch.append(handle)
-        return handle
+        return self.scratch(create(descriptor))

@@ -40,6 +40,9 @@ _LARGEST = 0.004
 # environments without one fail, for the price of a maximum.
 _LEAST_PEAK = _LEAST_SHARE * 4.0 * np.pi / _LARGEST
 
+# Of a map with suns and nothing else: they are a degree wide in it.
+_ROWS_OF_UNIFORM = 128
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SplitEnvironment:
@@ -61,13 +64,15 @@ def split_environment(
     """Split ``environment`` into a base and at most ``most`` suns.
 
     Its own suns come first. Those that are too many are drawn into the map.
-    One texel for all directions cannot show a sun and keeps them all.
+    One texel for all directions becomes a map if there are suns to be shown.
     """
     own = sorted(environment.suns, key=lambda sun: -sum(sun.irradiance))
+    pixels = environment.pixels
     if environment.is_uniform:
-        pixels = environment.pixels
-        return SplitEnvironment(pixels, pixels, tuple(own))
-    whole = _with_suns(environment.pixels, own[most:])
+        if not own:
+            return SplitEnvironment(pixels, pixels, ())
+        pixels = np.tile(pixels, (_ROWS_OF_UNIFORM, 2 * _ROWS_OF_UNIFORM, 1))
+    whole = _with_suns(pixels, own[most:])
     base, found = extract_suns(whole, max(most - len(own), 0))
     full = _with_suns(whole, own[:most])
     return SplitEnvironment(full, base, (*own[:most], *found))

@@ -5,14 +5,25 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from moka.commands.descriptors import BufferDescriptor, BufferUsage
+from moka.commands.descriptors import (
+    BufferDescriptor,
+    BufferUsage,
+    PixelFormat,
+    TextureDescriptor,
+)
 from moka.commands.handles import Handle
 from moka.core.errors import OptionError
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
-from moka.lighting.environment import Environment
+from moka.lighting.environment import Environment, Sun
+from moka.lighting.importance import importance_table
 from moka.lighting.preintegration import EnvironmentMaps, Preintegrator
+from moka.lighting.spherical_harmonics import (
+    irradiance_error,
+    irradiance_harmonics,
+)
+from moka.lighting.suns import AUTO_SUNS, SplitEnvironment, split_environment
 from moka.renderer.permutation import lights_layout
 from moka.renderer.view import turn_matrix
 from moka.scene.lights import LIGHT
@@ -23,6 +34,10 @@ __all__ = ["LightSources", "light_capacity"]
 # 16 KiB of uniform block hold this many.
 MOST_LIGHTS = 256
 _SMALLEST_CAPACITY = 4
+
+# The largest error of nine coefficients, relative to the mean irradiance,
+# that ``auto`` accepts before it makes a cube.
+_HARMONICS_ERROR = 0.04
 
 
 class LightSources:
@@ -38,8 +53,11 @@ class LightSources:
         self._preintegrator = Preintegrator(device, passes)
         self._statistics = statistics
         self.maps = EnvironmentMaps()
+        self.harmonics: NDArray[np.float64] | None = None
         self._environment: Environment | None = None
-        self._made = (False, False, False)
+        self._suns: tuple[Sun, ...] = ()
+        self._options: tuple[str | int, str, str] = ("auto", "auto", "")
+        self._made = (False,) * 4
         self._buffers: dict[int, Handle] = {}
 
     def table(self, brdf: str) -> Handle:
@@ -53,14 +71,28 @@ class LightSources:
         background: bool,
         specular: bool,
         irradiance: bool,
+        suns: str | int = "auto",
+        irradiance_as: str = "auto",
+        ibl: str = "split-sum",
     ) -> bool:
-        """Have the maps that are asked for; whether they are new ones."""
+        """Have the maps that are asked for; whether they are new ones.
+
+        ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
+        ``irradiance_as`` and ``ibl`` are RenderSettings' ``suns``,
+        ``irradiance`` and ``ibl``. Reference lighting samples the map with
+        its suns and nothing else.
+        """
+        sampled = ibl == "reference" and (specular or irradiance)
+        if sampled:
+            background, suns = True, "off"
+            specular = irradiance = False
+        options = (suns, irradiance_as, ibl)
         wanted = (
-            (background, specular, irradiance)
+            (background, specular, irradiance, sampled)
             if environment is not None
-            else (False, False, False)
+            else (False,) * 4
         )
-        same = environment is self._environment
+        same = environment is self._environment and options == self._options
         if same and all(
             made or not want
             for made, want in zip(self._made, wanted, strict=True)
@@ -68,28 +100,68 @@ class LightSources:
             return False
         self.maps.destroy(self._device)
         self.maps = EnvironmentMaps()
+        self.harmonics, self._suns = None, ()
         if environment is not None and any(wanted):
             with self._statistics.stage("environment"):
+                most = {"auto": AUTO_SUNS, "off": 0}.get(str(suns), suns)
+                split = split_environment(environment, int(most))
+                self._suns = split.suns
+                if irradiance:
+                    self.harmonics = _harmonics(split, irradiance_as)
                 self.maps = self._preintegrator.prepare(
-                    environment,
+                    split,
                     background=background,
                     specular=specular,
-                    irradiance=irradiance,
+                    irradiance=irradiance and self.harmonics is None,
                 )
+                if sampled:
+                    self._add_importance(split)
         self._environment, self._made = environment, wanted
+        self._options = options
+        self._report()
         return True
+
+    def _report(self) -> None:
+        """Say in the statistics what lights."""
+        kind = "sh" if self.harmonics is not None else None
+        if self.maps.irradiance is not None:
+            kind = "cube"
+        self._statistics.lighting.update(
+            mode=self._options[2],
+            suns=len(self._suns),
+            irradiance=kind,
+            prefiltered_levels=(
+                0 if self.maps.specular is None else self.maps.specular_levels
+            ),
+            cached=False,
+            samples_per_pixel=0,
+            estimated_error=None,
+        )
+
+    def _add_importance(self, environment: SplitEnvironment) -> None:
+        """Add the table by which the whole map is sampled."""
+        table = importance_table(environment.full)
+        height, width, _ = table.shape
+        texture = self._device.create_texture(
+            TextureDescriptor(
+                PixelFormat.RGBA32F, width, height, label="importance table"
+            ),
+            [table],
+        )
+        self.maps.importance = texture
+        self.maps.resources.append(texture)
 
     def rows(
         self, scene: Scene, origin: NDArray[np.float64]
     ) -> NDArray[np.void]:
         """Lights of the scene and suns of its environment, as LIGHT rows.
 
-        Raises OptionError for more lights than a block can hold.
+        The suns are those of the last :meth:`update_maps`. Raises
+        OptionError for more lights than a block can hold.
         """
         rows = scene.light_rows(origin)
-        environment = scene.environment
-        if environment is not None and environment.suns:
-            rows = np.concatenate([rows, _sun_rows(scene, environment)])
+        if self._suns:
+            rows = np.concatenate([rows, _sun_rows(scene, self._suns)])
         if len(rows) > MOST_LIGHTS:
             raise OptionError(
                 f"scene: {len(rows)} lights shine; moka draws up to "
@@ -120,14 +192,28 @@ def light_capacity(count: int) -> int:
     return max(_SMALLEST_CAPACITY, 1 << math.ceil(math.log2(count)))
 
 
-def _sun_rows(scene: Scene, environment: Environment) -> NDArray[np.void]:
+def _harmonics(
+    split: SplitEnvironment, irradiance_as: str
+) -> NDArray[np.float64] | None:
+    """Coefficients of irradiance, unless a cube is wanted or better."""
+    if irradiance_as == "cube":
+        return None
+    coefficients = irradiance_harmonics(split.base)
+    if irradiance_as == "sh":
+        return coefficients
+    error = irradiance_error(split.base, coefficients)
+    return coefficients if error <= _HARMONICS_ERROR else None
+
+
+def _sun_rows(scene: Scene, suns: tuple[Sun, ...]) -> NDArray[np.void]:
     """Suns as directional lights: their irradiance is in lux's place."""
-    rows = np.zeros(len(environment.suns), LIGHT)
+    rows = np.zeros(len(suns), LIGHT)
     world_from_environment = turn_matrix(scene.environment_rotation).T
-    for row, sun in zip(rows, environment.suns, strict=True):
+    for row, sun in zip(rows, suns, strict=True):
         row["direction"] = -(world_from_environment @ sun.direction)
         row["intensity"] = scene.environment_intensity * np.asarray(
             sun.irradiance
         )
         row["angle_offset"] = 1.0
+        row["angular_radius"] = sun.angular_radius
     return rows

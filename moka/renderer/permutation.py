@@ -35,6 +35,8 @@ FRAME = UniformLayout(
         # Cosine and sine of the environment's rotation about +Y.
         Parameter("environment_turn", ParameterType.VEC2),
         Parameter("environment_intensity", ParameterType.FLOAT),
+        # Of the environment's E / pi, with MOKA_IRRADIANCE_SH.
+        Parameter("irradiance_harmonics", ParameterType.VEC3, 9),
         # The level of the specular cube for roughness 1.
         Parameter("specular_levels", ParameterType.FLOAT),
         Parameter("light_count", ParameterType.INT),
@@ -58,6 +60,7 @@ def lights_layout(capacity: int) -> UniformLayout:
             Parameter("intensity", ParameterType.VEC3),
             Parameter("angle_scale", ParameterType.FLOAT),
             Parameter("angle_offset", ParameterType.FLOAT),
+            Parameter("angular_radius", ParameterType.FLOAT),
         ),
         capacity,
     )
@@ -75,6 +78,7 @@ def materials_layout(*, has_transforms: bool) -> UniformLayout:
 class LightingDescription:
     """What lights a frame, as far as it changes the shader's text.
 
+    With ``harmonics`` irradiance comes from nine coefficients, not a cube.
     ``light_capacity`` is 0 without punctual lights, else the power of two
     that holds them.
     """
@@ -85,6 +89,7 @@ class LightingDescription:
     diffuse: str
     multiscatter: bool
     float_target: bool
+    harmonics: bool = False
 
     def defines(self, features: Feature) -> dict[str, int]:
         """The defines for a material with ``features``."""
@@ -99,6 +104,8 @@ class LightingDescription:
             defines["MOKA_ENVIRONMENT"] = 1
             if Feature.DIFFUSE in features:
                 defines["MOKA_IRRADIANCE"] = 1
+                if self.harmonics:
+                    defines["MOKA_IRRADIANCE_SH"] = 1
         if self.light_capacity:
             defines["MOKA_PUNCTUAL_LIGHTS"] = 1
         if self.multiscatter:

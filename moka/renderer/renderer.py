@@ -118,9 +118,9 @@ class Renderer:
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
+        self._update_maps(scene, materials)
         lights = self._sources.rows(scene, view.position)
         capacity = light_capacity(len(lights)) if materials.has_lit else 0
-        self._update_maps(scene, materials)
         prepared = self._prepare(scene, materials, capacity)
         targets = self._update_targets()
         visible = np.flatnonzero(scene.visible(camera, width / height))
@@ -206,6 +206,8 @@ class Renderer:
             background=scene.background == "environment",
             specular=materials.has_lit,
             irradiance=materials.has_diffuse,
+            suns=self.settings.suns,
+            irradiance_as=self.settings.irradiance,
         )
         if changed:
             self._screen.forget()
@@ -223,6 +225,7 @@ class Renderer:
             settings.diffuse,
             settings.multiscatter,
             settings.float_output,
+            self._sources.harmonics is not None,
         )
         key = (self._materials_key, lighting)
         if self._prepared is not None and self._prepared_key == key:
@@ -269,8 +272,12 @@ class Renderer:
         self, scene: Scene, view: View, lights: NDArray[np.void]
     ) -> NDArray[np.void]:
         rotation = scene.environment_rotation
+        harmonics = self._sources.harmonics
         return FRAME.pack(
             {
+                "irradiance_harmonics": (
+                    np.zeros((9, 3)) if harmonics is None else harmonics
+                ),
                 "clip_from_world": view.clip_from_world,
                 "eye": view.eye,
                 "environment_turn": (math.cos(rotation), math.sin(rotation)),

@@ -24,7 +24,8 @@ __all__ = ["LIGHT", "Light", "pack_lights"]
 
 # One light as the shader reads it: four vec4 of a std140 block. The position
 # is relative to the origin that it was packed for; "positional" is 1, or 0
-# for a directional light; the intensity is colour times candela or lux.
+# for a directional light; the intensity is colour times candela or lux. The
+# angular radius, in radians, is a sun's; other lights have none.
 LIGHT = np.dtype(
     [
         ("position", np.float32, 3),
@@ -34,7 +35,8 @@ LIGHT = np.dtype(
         ("intensity", np.float32, 3),
         ("angle_scale", np.float32),
         ("angle_offset", np.float32),
-        ("spare", np.float32, 3),
+        ("angular_radius", np.float32),
+        ("spare", np.float32, 2),
     ]
 )
 

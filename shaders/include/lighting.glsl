@@ -53,11 +53,53 @@ float base_share(Surface surface) {
         * multiscatter_scale(DIELECTRIC_F0, surface.table));
 }
 
+// The level of the prefiltered cube for a roughness: quadratic, so that the
+// narrow lobes, which differ most, get their share of levels. Below level 1,
+// where levels 0 and 1 are mixed, it rises slowly at first: a lobe much
+// narrower than that of level 1 is a mirror's.
+float specular_level(float roughness) {
+    float level = specular_levels * roughness * (2.0 - roughness);
+    return level < 1.0 ? smoothstep(0.0, 1.0, level) : level;
+}
+
+// How much of a sun is a light. Level 0 of the specular cube is the mirror
+// image of the whole environment; the levels from 1 lack the suns. What a
+// texture lookup between the two takes of the first is the sun's part in the
+// map, and the rest is this: energy is exact at every roughness, and no step
+// is to be seen. On the way the sun's image fades and its highlight grows.
+float sun_weight(float roughness) {
+    return min(specular_level(roughness), 1.0);
+}
+
 #ifdef MOKA_ENVIRONMENT
 
 uniform samplerCube specular_cube;
+
 #ifdef MOKA_IRRADIANCE
+#ifndef MOKA_IRRADIANCE_SH
 uniform samplerCube irradiance_cube;
+#endif
+
+// E / pi of the environment on a surface that faces n, in its own space.
+// With MOKA_IRRADIANCE_SH after Ramamoorthi and Hanrahan 2001, equation 13,
+// all constants being in moka.lighting.spherical_harmonics' coefficients.
+vec3 environment_irradiance(vec3 n) {
+#ifdef MOKA_IRRADIANCE_SH
+    vec3 sum = irradiance_harmonics[0]
+        + irradiance_harmonics[1] * n.x
+        + irradiance_harmonics[2] * n.y
+        + irradiance_harmonics[3] * n.z
+        + irradiance_harmonics[4] * (n.x * n.y)
+        + irradiance_harmonics[5] * (n.y * n.z)
+        + irradiance_harmonics[6] * (3.0 * n.z * n.z - 1.0)
+        + irradiance_harmonics[7] * (n.x * n.z)
+        + irradiance_harmonics[8] * (n.x * n.x - n.y * n.y);
+    // A lamp in the dark would shine negatively behind.
+    return max(sum, 0.0);
+#else
+    return textureLod(irradiance_cube, n, 0.0).rgb;
+#endif
+}
 #endif
 
 // Split sum (Karis 2013): prefiltered radiance times the directional albedo
@@ -70,15 +112,13 @@ vec3 environment_light(Surface surface) {
     vec3 light = specular * textureLod(
         specular_cube,
         turn_into_environment(r, environment_turn),
-        surface.roughness * specular_levels).rgb;
+        specular_level(surface.roughness)).rgb;
 #ifdef MOKA_IRRADIANCE
     float n_dot_v = clamp_n_dot_v(dot(surface.normal, surface.view));
     vec3 diffuse = base_share(surface)
         * diffuse_albedo(n_dot_v, surface.diffuse_colour, surface.roughness);
-    light += diffuse * textureLod(
-        irradiance_cube,
-        turn_into_environment(surface.normal, environment_turn),
-        0.0).rgb;
+    light += diffuse * environment_irradiance(
+        turn_into_environment(surface.normal, environment_turn));
 #endif
     return light * (surface.occlusion * environment_intensity);
 }
@@ -97,6 +137,15 @@ float distance_attenuation(float squared_distance, float inverse_range) {
     return window / max(squared_distance, 1e-8);
 }
 
+// The lobe in which a light is seen. A sun is a disc of angular radius R;
+// the lobe that reflects it has a peak lower by 1 + R^2 / (4 alpha^2) for
+// R << alpha, and the radiance of the disc itself for alpha << R. A lobe of
+// this width has both, and all of the energy.
+float light_alpha(float roughness, float angular_radius) {
+    float alpha = alpha_from_roughness(roughness);
+    return sqrt(alpha * alpha + 0.25 * angular_radius * angular_radius);
+}
+
 // With energy compensation a light is reflected as the same light in an
 // environment map would be, and never more than all of it. Without, it is
 // glTF 2.0's appendix B to the letter, whose diffuse term (1 - F(v.h))
@@ -106,7 +155,6 @@ vec3 punctual_light(Surface surface) {
     float base = base_share(surface);
 #endif
     vec3 scale = multiscatter_scale(surface.f0, surface.table);
-    float alpha = alpha_from_roughness(surface.roughness);
     float k = schlick_k_direct(surface.roughness);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < light_count; ++i) {
@@ -133,7 +181,12 @@ vec3 punctual_light(Surface surface) {
 #else
         vec3 share = 1.0 - fresnel;
 #endif
-        vec3 reflected = fresnel * scale * specular_lobe(angles, alpha, k)
+        float lobe = specular_lobe(
+            angles, light_alpha(surface.roughness, light.angular_radius), k);
+        if (light.angular_radius > 0.0) {
+            lobe *= sun_weight(surface.roughness);
+        }
+        vec3 reflected = fresnel * scale * lobe
             + share * diffuse_brdf(
                 angles, surface.diffuse_colour, surface.roughness);
         sum += reflected * light.intensity

@@ -193,12 +193,19 @@ def test_own_suns_are_first_and_found_ones_fill_up():
     assert split_environment(environment, 1).suns == (own,)
 
 
-def test_one_texel_for_all_directions_keeps_its_suns_as_lights():
+def test_a_uniform_environment_becomes_a_map_to_show_its_suns():
     sun = Sun((0.0, 1.0, 0.0), (3.0, 2.0, 1.0))
     environment = Environment(np.ones((1, 1, 3), np.float32), (sun,))
-    split = split_environment(environment, 0)
+    split = split_environment(environment)
     assert split.suns == (sun,)
-    assert split.full is split.base
+    assert (split.base == 1.0).all()
+    added = flux(split.full) - flux(split.base)
+    assert added == pytest.approx(sun.irradiance, rel=1e-5)
+
+
+def test_a_uniform_environment_without_suns_stays_one_texel():
+    split = split_environment(Environment.uniform((1.0, 1.0, 1.0)))
+    assert split.base.shape == (1, 1, 3)
 
 
 @pytest.mark.assets
