@@ -21,7 +21,10 @@ import time
 START = time.perf_counter()
 
 import ctypes
+import os
 import threading
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy's would spin
 
 POINTER = ctypes.c_void_p
 
@@ -50,7 +53,6 @@ driver.start()
 import argparse
 import json
 import math
-import os
 import struct
 import sys
 import zlib
