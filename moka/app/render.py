@@ -65,6 +65,8 @@ def render(
     brdf: str = "gltf",
     diffuse: str = "lambert",
     multiscatter: bool = True,
+    suns: str | int = "auto",
+    irradiance: str = "auto",
     backend: str = "auto",
 ) -> Image:
     """Render one picture headless.
@@ -83,7 +85,11 @@ def render(
     mapped. ``brdf`` is ``gltf`` (glTF 2.0 appendix B), ``karis`` or
     ``blinn-phong``, ``diffuse`` ``lambert``, ``oren-nayar`` or ``burley``;
     ``multiscatter`` compensates the energy that single scattering loses
-    (Turquin 2019).
+    (Turquin 2019). ``suns`` is how many bright, compact parts of the
+    environment are lit as lights with the exact BRDF: ``auto``, ``off`` or
+    a number at most. ``irradiance`` is ``sh`` (nine spherical harmonics,
+    Ramamoorthi and Hanrahan 2001), ``cube``, or ``auto``, which decides by
+    the error of the former.
 
     Returns an :class:`moka.Image` of linear Rec.709 radiance, float32
     (height, width, 4), top row first.
@@ -98,6 +104,8 @@ def render(
         brdf=brdf,
         diffuse=diffuse,
         multiscatter=multiscatter,
+        suns=suns,
+        irradiance=irradiance,
         float_output=True,
     )
     return render_request(

@@ -114,6 +114,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="lambert, oren-nayar, burley (default: lambert)",
     )
     add(
+        "--suns",
+        metavar="N",
+        type=_suns,
+        default="auto",
+        help="bright compact parts of the environment lit as lights: auto, "
+        "off or how many at most (default: auto)",
+    )
+    add(
+        "--irradiance",
+        metavar="HOW",
+        default="auto",
+        help="diffuse light from spherical harmonics (sh) or a cube, or "
+        "auto, which decides by their error (default: auto)",
+    )
+    add(
         "--half",
         action="store_true",
         help="write half floats into .exr files",
@@ -181,6 +196,8 @@ def _request(
             brdf=arguments.brdf,
             diffuse=arguments.diffuse,
             multiscatter=arguments.multiscatter == "on",
+            suns=arguments.suns,
+            irradiance=arguments.irradiance,
             float_output=any(path.suffix.lower() == ".exr" for path in outputs),
         ),
         backend=arguments.backend,
@@ -223,6 +240,14 @@ def _number(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
     return value
+
+
+def _suns(text: str) -> str | int:
+    if text in ("auto", "off"):
+        return text
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not auto, off or 1, 2, …")
+    return int(text)
 
 
 def _count(text: str) -> int:
