@@ -8,11 +8,14 @@ flat out uint surface_material;
 
 #ifdef MOKA_VERTEX_NORMAL
 in vec3 normal;
-out vec3 surface_normal;
+// Where a triangle covers only samples beside the centre of a pixel, plain
+// interpolation would extrapolate the normal away from the viewer, and the
+// silhouette would sparkle.
+centroid out vec3 surface_normal;
 #endif
 #ifdef MOKA_VERTEX_TANGENT
 in vec4 tangent;
-out vec4 surface_tangent;
+centroid out vec4 surface_tangent;
 #endif
 #ifdef MOKA_UV_0
 in vec2 uv_0;

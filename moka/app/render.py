@@ -183,12 +183,18 @@ def _render_with(
         scene.environment = environment.result()
         commands = CommandList()
         renderer.draw(scene, camera, commands)
+        while not renderer.is_complete:
+            # What the GPU tells of the error comes with the frame.
+            device.submit(commands).wait()
+            commands = CommandList()
+            renderer.draw(scene, camera, commands)
         display = renderer.read_display(commands) if want_display else None
         radiance = renderer.read_radiance(commands) if want_pixels else None
         counters = device.submit(commands).wait()
         info = device.info
         for stage, seconds in device.stage_seconds().items():
             statistics.add_time(stage, seconds)
+        statistics.lighting.update(renderer.lighting_statistics)
     finally:
         renderer.close()
     statistics.gl.update(
@@ -220,12 +226,12 @@ def _load_model(source: Any) -> "Model":
 
     if isinstance(source, Model):
         return source
-    if source is None:
-        from moka.model.demo import demo_model
-
-        return demo_model()
     from moka.model.load import load_model
 
+    if source is None:
+        from moka.core.resources import asset_folder
+
+        source = asset_folder() / "demo.glb"
     return load_model(source)
 
 

@@ -2,10 +2,10 @@
 
 in vec3 surface_position;
 #ifdef MOKA_VERTEX_NORMAL
-in vec3 surface_normal;
+centroid in vec3 surface_normal;
 #endif
 #ifdef MOKA_VERTEX_TANGENT
-in vec4 surface_tangent;
+centroid in vec4 surface_tangent;
 #endif
 
 // Back faces of a single-sided material are culled.

@@ -2,12 +2,14 @@
 
 import io
 import time
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from moka.core.projection import perspective
-from moka.model import Perspective, demo_model
+from moka.core.resources import asset_folder
+from moka.model import Perspective, demo_model, save_model
 from moka.model.demo import _tile_images
 
 
@@ -18,6 +20,13 @@ def test_every_sphere_has_its_own_material() -> None:
     assert len(model.materials) == 22
     roughness = [m.roughness_factor for m in model.materials[1:8]]
     np.testing.assert_allclose(roughness, np.linspace(0, 1, 7))
+
+
+def test_the_file_that_ships_is_this_scene(tmp_path: Path) -> None:
+    """Made with ``save_model(demo_model(), "assets/demo.glb")``."""
+    path = tmp_path / "demo.glb"
+    save_model(demo_model(), path)
+    assert path.read_bytes() == (asset_folder() / "demo.glb").read_bytes()
 
 
 def test_the_camera_sees_all_of_it() -> None:
