@@ -57,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from moka.cli import compare, doctor, info, render
+    from moka.cli import compare, doctor, info, render, survey
 
     parser = _Parser(
         prog="moka",
@@ -74,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
         ("render", render),
         ("info", info),
         ("compare", compare),
+        ("survey", survey),
         ("doctor", doctor),
     ):
         summary = (module.__doc__ or "").splitlines()[0]
