@@ -1,0 +1,329 @@
+"""The largest error of each shader term: what docs/theory states.
+
+Every measure evaluates a GLSL function over a dense grid and compares it
+with the float64 oracle of its formula, at the same float32 inputs. Run as a
+program, ``python -m tests.support.stated_errors``, it prints what the tables
+of docs/theory hold; tests/gpu/test_stated_errors.py keeps them true.
+"""
+
+from collections.abc import Callable
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike
+
+from moka.core.colour import decode_srgb, encode_srgb
+from moka.core.solid_angle import cube_texel_solid_angles
+from moka.core.tone_map import TONE_MAPS, tone_map
+from tests.support.cube_passes import (
+    convolve,
+    prefilter,
+    smooth,
+    texel_directions,
+)
+from tests.support.gpu import gpu
+from tests.support.oracles import diffuse, environment, specular
+from tests.support.oracles.directions import (
+    Array,
+    dot,
+    half_vectors,
+    hemisphere,
+    random_directions,
+    spherical,
+)
+
+ROUGHNESSES = np.array([0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0])
+COSINES = np.geomspace(1e-4, 1.0, 120)
+COLOUR = np.array([0.1, 0.6, 1.0])
+ANGLES = "angles_between(vec3(0.0, 0.0, 1.0), view, light)"
+
+
+def single(values: ArrayLike) -> Array:
+    """As the shader gets them: rounded to float32."""
+    return np.asarray(values, np.float32).astype(np.float64)
+
+
+def grid(*axes: ArrayLike) -> tuple[Array, ...]:
+    """All combinations of float32 values, one array for each axis."""
+    return tuple(
+        x.ravel() for x in np.meshgrid(*map(single, axes), indexing="ij")
+    )
+
+
+def relative(value: Array, expected: Array) -> float:
+    return float(np.max(np.abs(value / expected - 1.0)))
+
+
+def absolute(value: Array, expected: Array) -> float:
+    return float(np.max(np.abs(value - expected)))
+
+
+def pairs(count: int) -> tuple[Array, Array, Array]:
+    """Views, lights and roughnesses as the shader gets them."""
+    view, light = (
+        single(random_directions(count, seed, 1e-3)) for seed in (1, 2)
+    )
+    generator = np.random.default_rng(3)
+    return view, light, single(generator.uniform(0.05, 1.0, count))
+
+
+def distribution_ggx() -> float:
+    """Angles to four widths of the lobe and far beyond."""
+    widths = np.concatenate((np.linspace(0.0, 4.0, 200), np.geomspace(4, 1e3)))
+    alpha, widths = grid(np.append(0.002, ROUGHNESSES**2), widths)
+    # Of the tangent, where the oracle's cosine would lose digits.
+    squared = (alpha * widths) ** 2
+    cosine = 1.0 / np.sqrt(1.0 + squared)
+    value = gpu().evaluate(
+        "distribution_ggx(c, s * s, alpha)",
+        "brdf",
+        c=cosine,
+        s=cosine * alpha * widths,
+        alpha=alpha,
+    )
+    expected = np.pi * cosine**4 * (alpha**2 + squared) ** 2
+    return relative(value, alpha**2 / expected)
+
+
+def visibility_smith() -> float:
+    light, view, alpha = grid(COSINES, COSINES, ROUGHNESSES**2)
+    value = gpu().evaluate(
+        "visibility_smith_ggx_correlated(light, view, alpha)",
+        "brdf",
+        light=light,
+        view=view,
+        alpha=alpha,
+    )
+    return relative(value, specular.smith_correlated(light, view, alpha))
+
+
+def visibility_schlick() -> float:
+    light, view, k = grid(COSINES, COSINES, np.linspace(0.01, 0.5, 8))
+    value = gpu().evaluate(
+        "visibility_schlick_ggx(light, view, k)",
+        "brdf",
+        light=light,
+        view=view,
+        k=k,
+    )
+    return relative(value, specular.schlick_ggx(light, view, k))
+
+
+def fresnel_schlick() -> float:
+    cosine, f0 = grid(np.linspace(0.0, 1.0, 1000), [0.0, 0.04, 0.5, 1.0])
+    value = gpu().evaluate("fresnel_schlick(c, f, 1.0)", "brdf", c=cosine, f=f0)
+    return absolute(value, specular.schlick(cosine, f0))
+
+
+def blinn_phong() -> float:
+    """Relative to the peak: the lobe dies away exponentially."""
+    alpha, scale = grid(ROUGHNESSES**2, np.linspace(0.0, 6.0, 400))
+    theta = np.minimum(alpha * scale, 1.5)
+    value = gpu().evaluate(
+        "blinn_phong(s * s, alpha)", "brdf", s=np.sin(theta), alpha=alpha
+    )
+    expected = specular.blinn_phong(np.cos(theta), alpha)
+    peak = specular.blinn_phong(np.ones_like(alpha), alpha)
+    return float(np.max(np.abs(value - expected) / peak))
+
+
+def specular_lobe() -> float:
+    """From vectors, whose rounding counts in narrow lobes."""
+    view, light, roughness = pairs(40000)
+    value = gpu().evaluate(
+        f"specular_lobe({ANGLES}, alpha_from_roughness(roughness), 0.0)",
+        "brdf",
+        view=view,
+        light=light,
+        roughness=roughness,
+    )
+    view, light = (
+        x / np.linalg.norm(x, axis=-1, keepdims=True) for x in (view, light)
+    )
+    alpha = np.maximum(roughness**2, 0.002)
+    return relative(
+        value,
+        specular.ggx(half_vectors(view, light)[:, 2], alpha)
+        * specular.smith_correlated(light[:, 2], view[:, 2], alpha),
+    )
+
+
+def diffuse_brdf(name: str) -> float:
+    view, light, roughness = pairs(40000)
+    value = gpu().evaluate(
+        f"diffuse_brdf({ANGLES}, colour, roughness)",
+        ("brdf", "diffuse"),
+        {f"MOKA_DIFFUSE_{name}": 1},
+        view=view,
+        light=light,
+        roughness=roughness,
+        colour=np.tile(COLOUR, (len(view), 1)),
+    )
+    return absolute(
+        value, diffuse_oracle(name, view, light, roughness[:, None])
+    )
+
+
+def diffuse_albedo(name: str) -> float:
+    """What is reflected of uniform light, against the lobe's integral."""
+    directions, weights = hemisphere(64, 64)
+    worst = 0.0
+    for cosine in (0.02, 0.1, 0.3, 0.6, 1.0):
+        for roughness in (0.0, 0.3, 0.7, 1.0):
+            view = np.broadcast_to(spherical(cosine, 0.3), directions.shape)
+            lobe = diffuse_oracle(name, view, directions, roughness)
+            value = gpu().evaluate(
+                "diffuse_albedo(cosine, colour, roughness)",
+                ("brdf", "diffuse"),
+                {f"MOKA_DIFFUSE_{name}": 1},
+                cosine=cosine,
+                roughness=roughness,
+                colour=COLOUR[None, :],
+            )
+            worst = max(worst, absolute(value[0], weights @ lobe))
+    return worst
+
+
+def diffuse_oracle(
+    name: str, view: Array, light: Array, roughness: ArrayLike
+) -> Array:
+    terms = (light[:, 2:], view[:, 2:], dot(view, light)[:, None])
+    if name == "LAMBERT":
+        return np.broadcast_to(diffuse.lambert(COLOUR), view.shape)
+    if name == "OREN_NAYAR":
+        return diffuse.oren_nayar(*terms, COLOUR, roughness)
+    return diffuse.burley(*terms, COLOUR, roughness, name == "BURLEY")
+
+
+def table(brdf: str, size: int = 64) -> float:
+    """Texels of the table, as many samples as the renderer takes."""
+    defines = {f"MOKA_BRDF_{brdf}": 1, "MOKA_SAMPLE_COUNT": 512}
+    value = gpu().draw("brdf_table.frag", (size, size), defines=defines)
+    centres = (np.arange(size) + 0.5) / size
+    n_dot_v, roughness = np.meshgrid(centres, centres)
+    visibility = (
+        specular.smith_correlated
+        if brdf == "GLTF"
+        else specular.schlick_ggx_environment
+    )
+    expected = specular.table_of_microfacets(n_dot_v, roughness, visibility)
+    return absolute(value[..., :2], expected)
+
+
+def white_furnace(size: int = 64) -> float:
+    """True albedo of a white metal times the factor that makes it 1."""
+    defines = {"MOKA_BRDF_GLTF": 1, "MOKA_SAMPLE_COUNT": 512}
+    entries = gpu().draw("brdf_table.frag", (size, size), defines=defines)
+    centres = (np.arange(size) + 0.5) / size
+    n_dot_v, roughness = np.meshgrid(centres, centres)
+    scale = gpu().evaluate(
+        "multiscatter_scale(vec3(1.0), entry).x",
+        ("brdf", "multiscatter"),
+        {"MOKA_MULTISCATTER": 1},
+        entry=entries[..., :2].reshape(-1, 2),
+    )
+    true = specular.table_of_microfacets(
+        n_dot_v.ravel(), roughness.ravel(), specular.smith_correlated
+    )
+    return absolute(true.sum(axis=-1) * scale, np.ones(size * size))
+
+
+def equirectangular() -> float:
+    d = single(random_directions(20000, 1, -1.0))
+    value = gpu().evaluate(
+        "equirectangular_from_direction(d)", "environment", d=d
+    )
+    u = 0.5 + np.arctan2(d[:, 2], d[:, 0]) / (2.0 * np.pi)
+    v = np.arctan2(np.hypot(d[:, 0], d[:, 2]), d[:, 1]) / np.pi
+    return absolute(value, np.stack((u, v), axis=-1))
+
+
+def relative_solid_angle() -> float:
+    """The differential at a texel's centre in place of its integral."""
+    size = 64
+    centre = (np.arange(size) + 0.5) / size * 2.0 - 1.0
+    x, y = grid(centre, centre)
+    value = gpu().evaluate(
+        "relative_solid_angle(d)",
+        "environment",
+        d=np.stack((x, y, np.ones_like(x)), axis=-1),
+    )
+    exact = cube_texel_solid_angles(size).ravel() / (2.0 / size) ** 2
+    return relative(value, exact)
+
+
+def srgb(function: str, twin: Callable[[Array], Array]) -> float:
+    x = single(np.tile(np.linspace(0.0, 1.0, 5000)[:, None], (1, 3)))
+    return absolute(gpu().evaluate(f"{function}(x)", "srgb", x=x), twin(x))
+
+
+def tone_curve(name: str) -> float:
+    generator = np.random.default_rng(1)
+    hue = generator.uniform(0.0, 1.0, (8000, 3))
+    x = single(hue * 10.0 ** generator.uniform(-7.0, 5.0, (8000, 1)))
+    defines = {f"MOKA_TONE_MAP_{name.upper()}": 1}
+    value = gpu().evaluate("tone_map(x)", "tone_map", defines, x=x)
+    return absolute(value, tone_map(x, name))
+
+
+def smooth_cube() -> moderngl.TextureCube:
+    """Radiance of 0 to 3 without an edge, 64 texels to a face's side."""
+    faces = smooth(texel_directions(64))
+    alpha = np.ones((6, 64, 64, 1))
+    return gpu().cube(np.concatenate((faces, alpha), axis=-1), mipmaps=True)
+
+
+def prefiltered() -> float:
+    """Five levels with the samples that a cube of 256 texels gets."""
+    cube = smooth_cube()
+    directions = texel_directions(8).reshape(-1, 3)[::7]
+    return max(
+        absolute(
+            prefilter(cube, level / 5, 16 << level).reshape(-1, 3)[::7],
+            environment.prefiltered(smooth, directions, level / 5),
+        )
+        for level in range(1, 6)
+    )
+
+
+def irradiance() -> float:
+    directions = texel_directions(8).reshape(-1, 3)[::7]
+    return absolute(
+        convolve(smooth_cube(), 512).reshape(-1, 3)[::7],
+        environment.irradiance_over_pi(smooth, directions),
+    )
+
+
+#: What the tables of docs/theory call it, and how it is measured.
+MEASURES: dict[str, Callable[[], float]] = {
+    "distribution_ggx": distribution_ggx,
+    "visibility_smith_ggx_correlated": visibility_smith,
+    "visibility_schlick_ggx": visibility_schlick,
+    "fresnel_schlick": fresnel_schlick,
+    "blinn_phong": blinn_phong,
+    "specular_lobe": specular_lobe,
+    **{
+        f"{function.__name__} {name.lower()}": (
+            lambda function=function, name=name: function(name)
+        )
+        for function in (diffuse_brdf, diffuse_albedo)
+        for name in ("LAMBERT", "OREN_NAYAR", "BURLEY", "BURLEY_ORIGINAL")
+    },
+    "brdf_table.frag gltf": lambda: table("GLTF"),
+    "brdf_table.frag karis": lambda: table("KARIS"),
+    "multiscatter_scale": white_furnace,
+    "prefilter_specular.frag": prefiltered,
+    "prefilter_irradiance.frag": irradiance,
+    "equirectangular_from_direction": equirectangular,
+    "relative_solid_angle": relative_solid_angle,
+    "srgb_encode": lambda: srgb("srgb_encode", encode_srgb),
+    "srgb_decode": lambda: srgb("srgb_decode", decode_srgb),
+    **{
+        f"tone_curve {name}": lambda name=name: tone_curve(name)
+        for name in TONE_MAPS
+    },
+}
+
+if __name__ == "__main__":
+    for label, measure in MEASURES.items():
+        print(f"{label:32} {measure():.1e}")
