@@ -246,7 +246,7 @@ def _suns(text: str) -> str | int:
     if text in ("auto", "off"):
         return text
     if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"{text!r} is not auto, off or 1, 2, …")
+        raise argparse.ArgumentTypeError(f"{text!r} is not auto, off or 1, 2…")
     return int(text)
 
 
