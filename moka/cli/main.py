@@ -4,6 +4,7 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
+from importlib import import_module
 from typing import NoReturn
 
 from moka.core.errors import MokaError, OptionError
@@ -13,6 +14,15 @@ __all__ = ["main"]
 
 # Where the clock of a run starts: before anything heavy is imported.
 STARTED = time.perf_counter()
+
+# Each is a module of this package, and its docstring's first line.
+_COMMANDS = {
+    "render": "Render one picture of a glTF model, or of the built-in scene.",
+    "info": "Say what a glTF file holds and what of it moka does not draw.",
+    "compare": "Compare a picture with a reference: FLIP, PSNR and RMSE.",
+    "survey": "Make a blind survey of pictures, and analyse its answers.",
+    "doctor": "Say which OpenGL contexts work here and what is missing.",
+}
 
 USER_ERROR = 2
 INTERNAL_ERROR = 1
@@ -35,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     debug = "--debug" in given
     try:
-        parsed = _parser().parse_args(given)
+        parsed = _parser(given).parse_args(given)
         parsed.started = STARTED
         return int(parsed.execute(parsed))
     except MokaError as error:
@@ -56,9 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
 
 
-def _parser() -> argparse.ArgumentParser:
-    from moka.cli import compare, doctor, info, render, survey
-
+def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
     parser = _Parser(
         prog="moka",
         description="Render glTF scenes with physically based shading.",
@@ -70,14 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", required=True
     )
-    for name, module in (
-        ("render", render),
-        ("info", info),
-        ("compare", compare),
-        ("survey", survey),
-        ("doctor", doctor),
-    ):
-        summary = (module.__doc__ or "").splitlines()[0]
+    for name, summary in _COMMANDS.items():
         command = commands.add_parser(
             name, help=summary, description=summary, allow_abbrev=False
         )
@@ -86,8 +87,11 @@ def _parser() -> argparse.ArgumentParser:
             action="store_true",
             help="show the traceback of an error, and check every GL call",
         )
-        module.add_arguments(command)
-        command.set_defaults(execute=module.execute)
+        if name in given:
+            # The others are not needed, nor what they import.
+            module = import_module(f"moka.cli.{name}")
+            module.add_arguments(command)
+            command.set_defaults(execute=module.execute)
     return parser
 
 
