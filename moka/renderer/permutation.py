@@ -41,6 +41,9 @@ FRAME = UniformLayout(
         Parameter("specular_levels", ParameterType.FLOAT),
         Parameter("light_count", ParameterType.INT),
         Parameter("point_size", ParameterType.FLOAT),
+        # Of reference lighting: x the first sample of the frame, y how many,
+        # z the number of the batch.
+        Parameter("sample_range", ParameterType.IVEC4),
     ),
 )
 
@@ -80,7 +83,7 @@ class LightingDescription:
 
     With ``harmonics`` irradiance comes from nine coefficients, not a cube.
     ``light_capacity`` is 0 without punctual lights, else the power of two
-    that holds them.
+    that holds them. ``ibl`` is how the environment lights.
     """
 
     environment: bool
@@ -90,6 +93,7 @@ class LightingDescription:
     multiscatter: bool
     float_target: bool
     harmonics: bool = False
+    ibl: str = "split-sum"
 
     def defines(self, features: Feature) -> dict[str, int]:
         """The defines for a material with ``features``."""
@@ -102,6 +106,8 @@ class LightingDescription:
         defines[f"MOKA_DIFFUSE_{_macro(self.diffuse)}"] = 1
         if self.environment:
             defines["MOKA_ENVIRONMENT"] = 1
+            if self.ibl != "split-sum":
+                defines[f"MOKA_IBL_{_macro(self.ibl)}"] = 1
             if Feature.DIFFUSE in features:
                 defines["MOKA_IRRADIANCE"] = 1
                 if self.harmonics:
@@ -117,8 +123,9 @@ class LightingDescription:
     @property
     def needs_table(self) -> bool:
         """Whether lit materials read the table of directional albedo."""
-        lights = bool(self.light_capacity)
-        return self.environment or (lights and self.multiscatter)
+        approximates = self.environment and self.ibl != "reference"
+        lit = self.environment or bool(self.light_capacity)
+        return approximates or (lit and self.multiscatter)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
     scene pass    opaque, then masked, then the environment behind them,
                   then blended back to front; linear, multisampled
+    accumulation  of reference lighting: frames so far, averaged
     display pass  samples averaged, exposed, tone mapped, encoded
 
 What does not change between frames is prepared once
@@ -10,6 +11,8 @@ cull, key, gather (:mod:`moka.renderer.gather`).
 """
 
 import math
+from collections.abc import Hashable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,10 +33,12 @@ from moka.renderer.light_sources import LightSources, light_capacity
 from moka.renderer.permutation import FRAME, LightingDescription
 from moka.renderer.prepared_scene import (
     LAYER_BACKGROUND,
+    LAYER_RESOLVE,
     PreparedScene,
     SceneMaterials,
     SharedBindings,
 )
+from moka.renderer.progressive import Progressive
 from moka.renderer.screen_passes import ScreenPasses
 from moka.renderer.settings import RenderSettings
 from moka.renderer.targets import Targets, make_targets
@@ -45,8 +50,9 @@ from moka.scene.scene import Scene
 __all__ = ["Renderer"]
 
 PASS_SCENE = 1
-PASS_DISPLAY = 2
-PASS_READ = 3
+PASS_ACCUMULATE = 2
+PASS_DISPLAY = 3
+PASS_READ = 4
 
 # Points are drawn as squares of this part of the picture's height.
 _POINT_SIZE = 1 / 360
@@ -76,6 +82,7 @@ class Renderer:
         self.statistics = statistics or Statistics()
         self._to_window = to_window
         passes = FullscreenPasses(device)
+        self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)
         self._sources = LightSources(device, passes, self.statistics)
         self._programs = ProgramCache(device)
@@ -110,6 +117,7 @@ class Renderer:
     def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
         """Record a frame of ``scene`` seen by ``camera`` into ``commands``.
 
+        Reference lighting takes several frames, see :attr:`is_complete`.
         Raises ModelError or ImageFileError for what a material needs and
         cannot be had.
         """
@@ -124,27 +132,18 @@ class Renderer:
         prepared = self._prepare(scene, materials, capacity)
         targets = self._update_targets()
         visible = np.flatnonzero(scene.visible(camera, width / height))
-
-        setup = commands.command_buffer(SortKey(PASS_SCENE))
-        setup.fill_buffer(self._frame, self._frame_values(scene, view, lights))
-        if capacity and len(lights):
-            setup.fill_buffer(
-                self._sources.buffer(capacity), lights.view(np.uint8)
+        if self._accumulates:
+            self._progressive.begin(
+                self._picture_key(scene, view, lights),
+                targets,
+                self.settings.reference_samples,
+                self.settings.max_error,
             )
-        setup.bind_framebuffer(targets.scene)
-        is_opaque = scene.background == "environment"
-        setup.clear((0, 0, 0, float(is_opaque)), 0.0 if is_reversed else 1.0)
-        states = np.array(
-            [commands.state_index(state) for state in prepared.states],
-            np.uint32,
-        )
-        commands.use(prepared.handles)
-        commands.draws(
-            *self._gatherer.gather(
-                scene.transforms, visible, view, states, PASS_SCENE
+            view = view.jittered(self._progressive.jitter, self.size)
+        if not self._accumulates or not self._progressive.is_finished:
+            self._draw_scene(
+                scene, view, lights, visible, targets, prepared, commands
             )
-        )
-        self._draw_behind(scene, view, commands)
         self._draw_display(scene, targets, commands)
         self._count(scene, prepared, len(visible))
 
@@ -164,9 +163,39 @@ class Renderer:
         return self._read(commands, self._current_targets.resolved, "f4")
 
     @property
+    def is_complete(self) -> bool:
+        """Whether another frame of the same scene would show the same.
+
+        Not before reference lighting has all its samples or, as far as the
+        GPU has told, a small enough error.
+        """
+        return not self._accumulates or self._progressive.is_finished
+
+    @property
+    def lighting_statistics(self) -> dict[str, Any]:
+        """How the last frames were lit, as the statistics file has it."""
+        settings = self.settings
+        samples, error = 0.0, None
+        if settings.ibl == "filtered":
+            samples = float(settings.ibl_samples)
+        elif self._accumulates:
+            self._progressive.take_report()
+            samples = round(self._progressive.samples_per_pixel, 2)
+            error = self._progressive.estimated_error
+        return {
+            "mode": settings.ibl,
+            "samples_per_pixel": samples,
+            "estimated_error": error,
+        }
+
+    @property
     def has_drawn(self) -> bool:
         """Whether there is a picture to read."""
         return self._targets is not None
+
+    @property
+    def _accumulates(self) -> bool:
+        return self.settings.ibl == "reference"
 
     @property
     def _current_targets(self) -> Targets:
@@ -208,6 +237,7 @@ class Renderer:
             irradiance=materials.has_diffuse,
             suns=self.settings.suns,
             irradiance_as=self.settings.irradiance,
+            ibl=self.settings.ibl,
         )
         if changed:
             self._screen.forget()
@@ -219,13 +249,14 @@ class Renderer:
         settings = self.settings
         maps = self._sources.maps
         lighting = LightingDescription(
-            maps.specular is not None,
+            maps.lights_surfaces,
             capacity,
             settings.brdf,
             settings.diffuse,
             settings.multiscatter,
-            settings.float_output,
+            settings.float_output or self._accumulates,
             self._sources.harmonics is not None,
+            settings.ibl,
         )
         key = (self._materials_key, lighting)
         if self._prepared is not None and self._prepared_key == key:
@@ -255,18 +286,81 @@ class Renderer:
     def _update_targets(self) -> Targets:
         settings = self.settings
         samples = min(settings.samples, self.device.info.max_samples)
-        wanted = (self.size, samples, settings.float_output)
+        float_output = settings.float_output or self._accumulates
+        if self._accumulates:
+            samples = 1  # Edges are smooth by another point in every frame.
+        wanted = (self.size, samples, float_output)
         if self._targets is None or self._targets.made_for != wanted:
             if self._targets is not None:
                 self._screen.forget()
+                self._progressive.forget()
                 self._targets.destroy(self.device)
             self._targets = make_targets(
-                self.device,
-                self.size,
-                samples,
-                float_output=settings.float_output,
+                self.device, self.size, samples, float_output=float_output
             )
         return self._targets
+
+    def _draw_scene(
+        self,
+        scene: Scene,
+        view: View,
+        lights: NDArray[np.void],
+        visible: NDArray[np.intp],
+        targets: Targets,
+        prepared: PreparedScene,
+        commands: CommandList,
+    ) -> None:
+        is_reversed = self.device.info.clip_control
+        capacity = light_capacity(len(lights)) if prepared.is_lit else 0
+        setup = commands.command_buffer(SortKey(PASS_SCENE))
+        setup.fill_buffer(self._frame, self._frame_values(scene, view, lights))
+        if capacity:
+            setup.fill_buffer(
+                self._sources.buffer(capacity), lights.view(np.uint8)
+            )
+        setup.bind_framebuffer(targets.scene)
+        # Black is opaque where the environment should be and is not.
+        is_dark = (
+            scene.background == "environment" and self._sources.maps.map is None
+        )
+        setup.clear((0, 0, 0, float(is_dark)), 0.0 if is_reversed else 1.0)
+        if self._accumulates:
+            self._progressive.mask(setup, 1.0 if is_reversed else 0.0)
+        states = np.array(
+            [commands.state_index(state) for state in prepared.states],
+            np.uint32,
+        )
+        commands.use(prepared.handles)
+        commands.draws(
+            *self._gatherer.gather(
+                scene.transforms, visible, view, states, PASS_SCENE
+            )
+        )
+        self._screen.resolve(
+            commands, SortKey(PASS_SCENE, LAYER_RESOLVE), targets
+        )
+        self._draw_behind(scene, view, targets, commands)
+        if self._accumulates:
+            self._progressive.accumulate(
+                commands, SortKey(PASS_ACCUMULATE), targets
+            )
+
+    def _picture_key(
+        self, scene: Scene, view: View, lights: NDArray[np.void]
+    ) -> Hashable:
+        """All that radiance depends on: the same while samples add up."""
+        return (
+            self._prepared_key,
+            id(scene.environment),
+            scene.environment_rotation,
+            scene.environment_intensity,
+            scene.background == "environment",
+            scene.transforms.version,
+            scene.visibility_version,
+            view.position.tobytes(),
+            view.clip_from_world.tobytes(),
+            lights.tobytes(),
+        )
 
     def _frame_values(
         self, scene: Scene, view: View, lights: NDArray[np.void]
@@ -285,23 +379,36 @@ class Renderer:
                 "specular_levels": self._sources.maps.specular_levels - 1,
                 "light_count": len(lights),
                 "point_size": max(1.0, self.size[1] * _POINT_SIZE),
+                "sample_range": (
+                    self._progressive.sample_range
+                    if self._accumulates
+                    else (0, self.settings.ibl_samples, 0, 0)
+                ),
             }
         )
 
     def _draw_behind(
-        self, scene: Scene, view: View, commands: CommandList
+        self,
+        scene: Scene,
+        view: View,
+        targets: Targets,
+        commands: CommandList,
     ) -> None:
         environment_map = self._sources.maps.map
         if scene.background != "environment" or environment_map is None:
             return
+        layer = (
+            LAYER_RESOLVE + 1 if targets.is_multisampled else LAYER_BACKGROUND
+        )
         self._screen.draw_background(
             commands,
-            SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE),
+            SortKey(PASS_SCENE, layer, Stage.OPAQUE),
+            targets,
             environment_map,
             view,
             rotation=scene.environment_rotation,
             intensity=scene.environment_intensity,
-            float_target=self.settings.float_output,
+            float_target=self.settings.float_output or self._accumulates,
         )
 
     def _draw_display(

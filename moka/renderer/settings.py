@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from moka.core.errors import OptionError
 
-__all__ = ["BRDFS", "DIFFUSE_MODELS", "RenderSettings"]
+__all__ = ["BRDFS", "DIFFUSE_MODELS", "IBL_MODES", "RenderSettings"]
 
 BRDFS = ("gltf", "karis", "blinn-phong")
 DIFFUSE_MODELS = ("lambert", "oren-nayar", "burley")
@@ -12,6 +12,11 @@ IRRADIANCE = ("auto", "sh", "cube")
 
 # Each is a light in every pixel.
 MOST_SUNS = 64
+IBL_MODES = ("split-sum", "filtered", "reference")
+
+# Filtered samples are a loop in one frame; 256 leave nothing to be seen.
+MOST_IBL_SAMPLES = 256
+MOST_REFERENCE_SAMPLES = 1 << 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +32,13 @@ class RenderSettings:
     lights: ``auto``, ``off`` or a number at most. ``irradiance`` is what
     diffuse light is read from: spherical harmonics (``sh``), a ``cube`` map,
     or ``auto``, which decides by the error of the former.
+
+    ``ibl`` is how the environment lights: ``split-sum``; ``filtered``, which
+    adds ``ibl_samples`` view-dependent samples; ``reference``, which
+    integrates it over several frames until each pixel has
+    ``reference_samples`` samples or, tile by tile, its estimated relative
+    standard error is below ``max_error``. There ``samples`` does not matter:
+    every frame sees another point of each pixel.
     """
 
     exposure: float = 0.0
@@ -38,6 +50,10 @@ class RenderSettings:
     float_output: bool = False
     suns: str | int = "auto"
     irradiance: str = "auto"
+    ibl: str = "split-sum"
+    ibl_samples: int = 16
+    reference_samples: int = 512
+    max_error: float | None = None
 
     def __post_init__(self) -> None:
         """Raise OptionError for a value that means nothing."""
@@ -52,6 +68,15 @@ class RenderSettings:
         ):
             raise OptionError(
                 f"suns: {self.suns!r} is neither auto, off nor 0 to {MOST_SUNS}"
+            )
+        _check("lighting mode", self.ibl, IBL_MODES)
+        _check_count("filtered samples", self.ibl_samples, MOST_IBL_SAMPLES)
+        _check_count(
+            "reference samples", self.reference_samples, MOST_REFERENCE_SAMPLES
+        )
+        if self.max_error is not None and not 0 < self.max_error < 1:
+            raise OptionError(
+                f"maximum error: {self.max_error} is not between 0 and 1"
             )
         if not 1 <= self.samples <= 64:
             raise OptionError(
@@ -68,3 +93,8 @@ def _check(what: str, value: str, known: tuple[str, ...]) -> None:
         raise OptionError(
             f"{what}: {value!r} is unknown; choose from {', '.join(known)}"
         )
+
+
+def _check_count(what: str, value: int, most: int) -> None:
+    if not 1 <= value <= most:
+        raise OptionError(f"{what}: {value} is not between 1 and {most}")

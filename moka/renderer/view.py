@@ -5,7 +5,7 @@ precision, so that a scene a million metres from zero keeps its detail.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,6 +42,22 @@ class View:
         # Parallel rays: everything is seen along the camera's own axis.
         return np.append(self.matrix[2, :3], 0.0)
 
+    def jittered(
+        self, offset: tuple[float, float], size: tuple[int, int]
+    ) -> "View":
+        """The view through another point of every pixel.
+
+        ``offset`` is in pixels from their centres, ``size`` the picture's.
+        """
+        shift = np.eye(4)
+        # What lies at the offset moves to the centre.
+        shift[:2, 3] = -2.0 * np.array(offset) / size
+        return replace(
+            self,
+            projection=shift @ self.projection,
+            clip_from_world=shift @ self.clip_from_world,
+        )
+
     def direction_from_clip(self, environment_rotation: float) -> Array:
         """(4, 4): clip (x, y, 0, 1) to a direction of the environment.
 
@@ -51,8 +67,10 @@ class View:
         camera_from_clip = np.zeros((4, 4))
         camera_from_clip[2, 3] = -1.0
         if self.is_perspective:
-            camera_from_clip[0, 0] = 1 / self.projection[0, 0]
-            camera_from_clip[1, 1] = 1 / self.projection[1, 1]
+            # Where z is -1; the third column shifts the picture.
+            for axis in (0, 1):
+                scale, shift = self.projection[axis, [axis, 2]]
+                camera_from_clip[axis, [axis, 3]] = 1 / scale, shift / scale
         world_from_camera = np.eye(4)
         world_from_camera[:3, :3] = self.matrix[:3, :3].T
         turn = np.eye(4)

@@ -71,7 +71,10 @@ float sun_weight(float roughness) {
     return min(specular_level(roughness), 1.0);
 }
 
-#ifdef MOKA_ENVIRONMENT
+// MOKA_IBL_REFERENCE has another environment_light.
+#include "include/reference.glsl"
+
+#if defined(MOKA_ENVIRONMENT) && !defined(MOKA_IBL_REFERENCE)
 
 uniform samplerCube specular_cube;
 

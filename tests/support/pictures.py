@@ -100,6 +100,10 @@ def draw_with_display(
     try:
         commands = CommandList()
         renderer.draw(scene, camera, commands)
+        while not renderer.is_complete:
+            device.submit(commands).wait()
+            commands = CommandList()
+            renderer.draw(scene, camera, commands)
         radiance = renderer.read_radiance(commands)
         display = renderer.read_display(commands)
         device.submit(commands).wait()

@@ -1,8 +1,9 @@
 """Light of an environment map that a surface reflects, in float64.
 
 The map is taken as it is read, with bilinear interpolation, and integrated
-against the BRDF by quadrature: over half vectors for the specular lobe,
-which flattens its peak, over the hemisphere for the diffuse term.
+against the BRDF by quadrature: over the pieces of the map between texel
+centres, in which it is a polynomial, and for lobes narrower than these over
+half vectors, which flattens their peak.
 """
 
 from dataclasses import dataclass
@@ -11,14 +12,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tests.support.oracles import specular
-from tests.support.oracles.directions import gauss_legendre, spherical
+from tests.support.oracles.directions import (
+    gauss_legendre,
+    half_vectors,
+    spherical,
+)
 from tests.support.oracles.environment import around
 
 Array = NDArray[np.float64]
 
 
 def bilinear(pixels: ArrayLike, uv: Array) -> Array:
-    """A map (H, W, 3) at texture coordinates (..., 2); u wraps around."""
+    """A map (H, W, C) at texture coordinates (..., 2); u wraps around."""
     pixels = np.asarray(pixels, float)
     height, width, _ = pixels.shape
     x = uv[..., 0] * width - 0.5
@@ -54,14 +59,37 @@ class Material:
         return 0.04 + self.metalness * (np.array(self.colour) - 0.04)
 
 
+class Surroundings:
+    """A map and its pieces: what comes from (N,) directions."""
+
+    def __init__(self, pixels: ArrayLike, nodes: int = 6) -> None:
+        self.pixels = np.asarray(pixels, float)
+        height, width, _ = self.pixels.shape
+        u, u_weight = _pieces((np.arange(width + 1) + 0.5) / width, nodes)
+        edges = (np.arange(height) + 0.5) / height
+        v, v_weight = _pieces(np.concatenate(([0], edges, [1])), nodes)
+        uv = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+        polar, azimuth = uv[:, 1] * np.pi, (uv[:, 0] - 0.5) * 2.0 * np.pi
+        self.directions = np.stack(
+            (
+                np.sin(polar) * np.cos(azimuth),
+                np.cos(polar),
+                np.sin(polar) * np.sin(azimuth),
+            ),
+            axis=-1,
+        )
+        solid_angle = 2.0 * np.pi**2 * np.sin(polar)
+        weights = np.outer(v_weight, u_weight).ravel() * solid_angle
+        self.light = bilinear(self.pixels, uv) * weights[:, None]
+
+
 def reflected(
-    pixels: ArrayLike,
+    surroundings: Surroundings,
     normal: Array,
     view: Array,
     material: Material,
     *,
     multiscatter: bool,
-    nodes: int = 256,
 ) -> Array:
     """Radiance (3,) towards ``view``: GGX, correlated Smith, Lambert.
 
@@ -79,21 +107,38 @@ def reflected(
     table = specular.table_of_microfacets(
         n_dot_v, max(material.roughness, 1e-3), specular.smith_correlated, 96
     )
-    scale = 1.0 + material.f0 * (1.0 / table.sum() - 1.0)
-    light = _specular(pixels, frame, v, material, nodes)
-    light = light * scale if multiscatter else light
-    if material.metalness < 1.0:
-        share = 1.0 - (0.04 * table[0] + table[1]) * (
-            1.0 + 0.04 * (1.0 / table.sum() - 1.0)
-        )
-        light = light + _diffuse(
-            pixels, frame, v, material, share if multiscatter else None, nodes
-        )
-    return light
+    l = surroundings.directions @ frame.T  # noqa: E741
+    above = l[:, 2] > 0.0
+    l = l[above]  # noqa: E741
+    light = surroundings.light[above] * l[:, 2:]
+    h = half_vectors(np.broadcast_to(v, l.shape), l)
+    fresnel = specular.schlick((h @ v)[:, None], material.f0)
+    if material.roughness < 0.3:
+        total = _narrow_lobe(surroundings.pixels, frame, v, material)
+    else:
+        alpha = np.array(material.roughness**2)
+        lobe = specular.ggx(h[:, 2], alpha)
+        lobe = lobe * specular.smith_correlated(l[:, 2], v[2], alpha)
+        total = np.sum(lobe[:, None] * fresnel * light, axis=0)
+    scale = 1.0 / table.sum() - 1.0
+    if multiscatter:
+        total = total * (1.0 + material.f0 * scale)
+    share = 1.0 - (0.04 * table[0] + table[1]) * (1.0 + 0.04 * scale)
+    passed = share if multiscatter else 1.0 - fresnel
+    colour = np.array(material.colour) * (1.0 - material.metalness)
+    return total + colour / np.pi * np.sum(passed * light, axis=0)
 
 
-def _specular(
-    pixels: ArrayLike, frame: Array, v: Array, material: Material, nodes: int
+def _pieces(edges: Array, nodes: int) -> tuple[Array, Array]:
+    """Gauss-Legendre nodes and weights in each interval of ``edges``."""
+    unit, weight = gauss_legendre(nodes)
+    length = np.diff(edges)
+    places = edges[:-1, None] + length[:, None] * unit
+    return places.ravel(), (length[:, None] * weight).ravel()
+
+
+def _narrow_lobe(
+    pixels: Array, frame: Array, v: Array, material: Material, nodes: int = 256
 ) -> Array:
     if material.roughness == 0.0:
         mirrored = v * (-1, -1, 1)
@@ -123,27 +168,3 @@ def _specular(
     fresnel = specular.schlick(v_dot_h[..., None], material.f0)
     light = radiance(pixels, l @ frame)
     return np.einsum("ij,ijk->k", measure, fresnel * light)
-
-
-def _diffuse(
-    pixels: ArrayLike,
-    frame: Array,
-    v: Array,
-    material: Material,
-    share: float | None,
-    nodes: int,
-) -> Array:
-    cosine, weight = gauss_legendre(nodes)
-    azimuth = (np.arange(2 * nodes) + 0.5) / (2 * nodes) * 2.0 * np.pi
-    l = spherical(cosine[:, None], azimuth[None, :])  # noqa: E741
-    measure = (cosine * weight)[:, None] * (np.pi / nodes) / np.pi
-    colour = np.array(material.colour) * (1.0 - material.metalness)
-    if share is None:
-        half = l + v
-        half /= np.linalg.norm(half, axis=-1, keepdims=True)
-        passed = 1.0 - specular.schlick((half @ v)[..., None], material.f0)
-    else:
-        passed = np.full((1, 1, 1), share)
-    light = radiance(pixels, l @ frame)
-    total = np.sum(measure[..., None] * passed * light, axis=(0, 1))
-    return colour * total
