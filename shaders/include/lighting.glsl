@@ -105,6 +105,19 @@ vec3 environment_irradiance(vec3 n) {
 }
 #endif
 
+// Where a lobe looks, not normalised: a rough surface sees the environment
+// above its normal rather than in the mirror direction r, because shadowing
+// and n.l take the far side of the lobe away (Lagarde and de Rousiers 2014,
+// "Moving Frostbite to PBR", section 4.9.3). The power is fitted to exact
+// integration. Under sky, studio, beach and soft boxes, suns taken out, it
+// takes the relative RMSE at roughness 0.2 to 1 from 0.06, 0.22, 0.04, 0.08
+// to 0.02, 0.10, 0.02, 0.07; theirs has 0.02, 0.10, 0.02, 0.08, and with the
+// lobe's true mean direction it is no better. With a sun in the map it would
+// be worse than r.
+vec3 dominant_direction(vec3 n, vec3 r, float roughness) {
+    return mix(r, n, roughness * roughness * roughness);
+}
+
 // Split sum (Karis 2013): prefiltered radiance times the directional albedo
 // of the lobe; the diffuse base gets what the interface lets through.
 vec3 environment_light(Surface surface) {
@@ -112,9 +125,10 @@ vec3 environment_light(Surface surface) {
         specular_albedo(surface.f0, surface.f90, surface.table)
         * multiscatter_scale(surface.f0, surface.table);
     vec3 r = reflect(-surface.view, surface.normal);
+    vec3 seen = dominant_direction(surface.normal, r, surface.roughness);
     vec3 light = specular * textureLod(
         specular_cube,
-        turn_into_environment(r, environment_turn),
+        turn_into_environment(seen, environment_turn),
         specular_level(surface.roughness)).rgb;
 #ifdef MOKA_IRRADIANCE
     float n_dot_v = clamp_n_dot_v(dot(surface.normal, surface.view));
