@@ -1,28 +1,12 @@
-"""The largest error of each shader term: what docs/theory states.
-
-Every measure evaluates a GLSL function over a dense grid and compares it
-with the float64 oracle of its formula, at the same float32 inputs. Run as a
-program, ``python -m tests.support.stated_errors``, it prints what the tables
-of docs/theory hold; tests/gpu/test_stated_errors.py keeps them true.
-"""
+"""Specular and diffuse terms, and the table of their albedo."""
 
 from collections.abc import Callable
 
-import moderngl
 import numpy as np
 from numpy.typing import ArrayLike
 
-from moka.core.colour import decode_srgb, encode_srgb
-from moka.core.solid_angle import cube_texel_solid_angles
-from moka.core.tone_map import TONE_MAPS, tone_map
-from tests.support.cube_passes import (
-    convolve,
-    prefilter,
-    smooth,
-    texel_directions,
-)
 from tests.support.gpu import gpu
-from tests.support.oracles import diffuse, environment, specular
+from tests.support.oracles import diffuse, specular
 from tests.support.oracles.directions import (
     Array,
     dot,
@@ -31,31 +15,12 @@ from tests.support.oracles.directions import (
     random_directions,
     spherical,
 )
+from tests.support.stated_errors.grids import absolute, grid, relative, single
 
 ROUGHNESSES = np.array([0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0])
 COSINES = np.geomspace(1e-4, 1.0, 120)
 COLOUR = np.array([0.1, 0.6, 1.0])
 ANGLES = "angles_between(vec3(0.0, 0.0, 1.0), view, light)"
-
-
-def single(values: ArrayLike) -> Array:
-    """As the shader gets them: rounded to float32."""
-    return np.asarray(values, np.float32).astype(np.float64)
-
-
-def grid(*axes: ArrayLike) -> tuple[Array, ...]:
-    """All combinations of float32 values, one array for each axis."""
-    return tuple(
-        x.ravel() for x in np.meshgrid(*map(single, axes), indexing="ij")
-    )
-
-
-def relative(value: Array, expected: Array) -> float:
-    return float(np.max(np.abs(value / expected - 1.0)))
-
-
-def absolute(value: Array, expected: Array) -> float:
-    return float(np.max(np.abs(value - expected)))
 
 
 def pairs(count: int) -> tuple[Array, Array, Array]:
@@ -228,73 +193,6 @@ def white_furnace(size: int = 64) -> float:
     return absolute(true.sum(axis=-1) * scale, np.ones(size * size))
 
 
-def equirectangular() -> float:
-    d = single(random_directions(20000, 1, -1.0))
-    value = gpu().evaluate(
-        "equirectangular_from_direction(d)", "environment", d=d
-    )
-    u = 0.5 + np.arctan2(d[:, 2], d[:, 0]) / (2.0 * np.pi)
-    v = np.arctan2(np.hypot(d[:, 0], d[:, 2]), d[:, 1]) / np.pi
-    return absolute(value, np.stack((u, v), axis=-1))
-
-
-def relative_solid_angle() -> float:
-    """The differential at a texel's centre in place of its integral."""
-    size = 64
-    centre = (np.arange(size) + 0.5) / size * 2.0 - 1.0
-    x, y = grid(centre, centre)
-    value = gpu().evaluate(
-        "relative_solid_angle(d)",
-        "environment",
-        d=np.stack((x, y, np.ones_like(x)), axis=-1),
-    )
-    exact = cube_texel_solid_angles(size).ravel() / (2.0 / size) ** 2
-    return relative(value, exact)
-
-
-def srgb(function: str, twin: Callable[[Array], Array]) -> float:
-    x = single(np.tile(np.linspace(0.0, 1.0, 5000)[:, None], (1, 3)))
-    return absolute(gpu().evaluate(f"{function}(x)", "srgb", x=x), twin(x))
-
-
-def tone_curve(name: str) -> float:
-    generator = np.random.default_rng(1)
-    hue = generator.uniform(0.0, 1.0, (8000, 3))
-    x = single(hue * 10.0 ** generator.uniform(-7.0, 5.0, (8000, 1)))
-    defines = {f"MOKA_TONE_MAP_{name.upper()}": 1}
-    value = gpu().evaluate("tone_map(x)", "tone_map", defines, x=x)
-    return absolute(value, tone_map(x, name))
-
-
-def smooth_cube() -> moderngl.TextureCube:
-    """Radiance of 0 to 3 without an edge, 64 texels to a face's side."""
-    faces = smooth(texel_directions(64))
-    alpha = np.ones((6, 64, 64, 1))
-    return gpu().cube(np.concatenate((faces, alpha), axis=-1), mipmaps=True)
-
-
-def prefiltered() -> float:
-    """Five levels with the samples that a cube of 256 texels gets."""
-    cube = smooth_cube()
-    directions = texel_directions(8).reshape(-1, 3)[::7]
-    return max(
-        absolute(
-            prefilter(cube, level / 5, 16 << level).reshape(-1, 3)[::7],
-            environment.prefiltered(smooth, directions, level / 5),
-        )
-        for level in range(1, 6)
-    )
-
-
-def irradiance() -> float:
-    directions = texel_directions(8).reshape(-1, 3)[::7]
-    return absolute(
-        convolve(smooth_cube(), 512).reshape(-1, 3)[::7],
-        environment.irradiance_over_pi(smooth, directions),
-    )
-
-
-#: What the tables of docs/theory call it, and how it is measured.
 MEASURES: dict[str, Callable[[], float]] = {
     "distribution_ggx": distribution_ggx,
     "visibility_smith_ggx_correlated": visibility_smith,
@@ -312,18 +210,4 @@ MEASURES: dict[str, Callable[[], float]] = {
     "brdf_table.frag gltf": lambda: table("GLTF"),
     "brdf_table.frag karis": lambda: table("KARIS"),
     "multiscatter_scale": white_furnace,
-    "prefilter_specular.frag": prefiltered,
-    "prefilter_irradiance.frag": irradiance,
-    "equirectangular_from_direction": equirectangular,
-    "relative_solid_angle": relative_solid_angle,
-    "srgb_encode": lambda: srgb("srgb_encode", encode_srgb),
-    "srgb_decode": lambda: srgb("srgb_decode", decode_srgb),
-    **{
-        f"tone_curve {name}": lambda name=name: tone_curve(name)
-        for name in TONE_MAPS
-    },
 }
-
-if __name__ == "__main__":
-    for label, measure in MEASURES.items():
-        print(f"{label:32} {measure():.1e}")
