@@ -16,7 +16,6 @@ candidate must be like every engine, which needs no correction for their
 number: each could only make the whole fail.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -35,7 +34,14 @@ from moka.survey.statistics import (
     wilcoxon,
 )
 
-__all__ = ["Analysis", "Criterion", "PairResult", "RendererResult", "analyse"]
+__all__ = [
+    "Analysis",
+    "Criterion",
+    "PairResult",
+    "RendererResult",
+    "Verdict",
+    "analyse",
+]
 
 
 @dataclass(frozen=True)
@@ -64,23 +70,32 @@ class PairResult:
 
 
 @dataclass(frozen=True)
-class Criterion:
-    """Whether ``candidate`` is rated like each of the engines.
+class Verdict:
+    """How the candidate stands to one engine.
 
-    ``verdicts`` say for each ``equivalent``, ``not worse``, ``worse`` or
-    ``undecided``; ``met`` if all are one of the first two.
+    ``difference`` is candidate - engine; ``verdict`` is ``equivalent``,
+    ``not worse``, ``worse`` or ``undecided``.
     """
+
+    engine: str
+    difference: Summary
+    verdict: str
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """Whether ``candidate`` is rated like each of the engines."""
 
     candidate: str
     margin: float
-    verdicts: dict[str, str]
+    verdicts: Sequence[Verdict]
 
     @property
     def met(self) -> bool:
-        """True if the candidate is rated like every engine."""
+        """True if the candidate is equivalent or not worse everywhere."""
         return all(
-            verdict in ("equivalent", "not worse")
-            for verdict in self.verdicts.values()
+            each.verdict in ("equivalent", "not worse")
+            for each in self.verdicts
         )
 
 
@@ -132,12 +147,12 @@ def analyse(
     pairs = _pairs([each.name for each in renderers], names, ratings)
     criterion = None
     if engines:
-        verdicts = {
-            engine: _verdict(
-                _differences(candidate, engine, names, ratings), engine, margin
+        verdicts = [
+            _judge(
+                engine, _differences(candidate, engine, names, ratings), margin
             )
             for engine in engines
-        }
+        ]
         criterion = Criterion(candidate, margin, verdicts)
     return Analysis(
         answers.participants,
@@ -214,14 +229,18 @@ def _pairs(
     ]
 
 
-def _verdict(
-    sample: NDArray[np.float64] | None, engine: str, margin: float
-) -> str:
+def _judge(
+    engine: str, sample: NDArray[np.float64] | None, margin: float
+) -> Verdict:
     if sample is None:
         raise OptionError(f"{engine}: shares no scene with the candidate")
     difference = summarise(sample)
-    if math.isnan(difference.least):
-        return "undecided"
-    if difference.least > -margin:
-        return "equivalent" if difference.most < margin else "not worse"
-    return "worse" if difference.most < -margin else "undecided"
+    # Comparisons with NaN, the limits of a single participant, are false.
+    not_worse = difference.least > -margin
+    if not_worse and difference.most < margin:
+        verdict = "equivalent"
+    elif not_worse:
+        verdict = "not worse"
+    else:
+        verdict = "worse" if difference.most < -margin else "undecided"
+    return Verdict(engine, difference, verdict)

@@ -13,7 +13,6 @@ from moka.core.atomic_file import atomic_file
 from moka.core.errors import OptionError
 from moka.survey.analysis import Analysis, Criterion
 from moka.survey.answers import Answers
-from moka.survey.statistics import Summary
 
 __all__ = ["as_json", "as_text", "write_csv"]
 
@@ -29,7 +28,7 @@ def as_text(found: Analysis) -> str:
             [
                 each.name,
                 f"{each.ratings.mean:.2f}",
-                _interval(each.ratings),
+                _range(each.ratings.low, each.ratings.high),
                 _number(each.ratings.deviation),
                 f"{each.rank:.2f}",
             ]
@@ -43,7 +42,7 @@ def as_text(found: Analysis) -> str:
             [
                 f"{each.first} - {each.second}",
                 f"{each.difference.mean:+.2f}",
-                _interval(each.difference),
+                _range(each.difference.low, each.difference.high),
                 *(
                     _probability(p)
                     for p in (each.p_t, each.p_holm, each.p_wilcoxon)
@@ -108,10 +107,13 @@ def _counts(found: Analysis) -> str:
 
 def _verdict(criterion: Criterion) -> list[str]:
     lines = [
-        f"{criterion.candidate} against {engine}: {verdict}"
-        for engine, verdict in criterion.verdicts.items()
+        f"{criterion.candidate} - {each.engine}: "
+        f"{each.difference.mean:+.2f}, 90 % interval "
+        f"{_range(each.difference.least, each.difference.most)}: "
+        f"{each.verdict}"
+        for each in criterion.verdicts
     ]
-    engines = ", ".join(criterion.verdicts)
+    engines = ", ".join(each.engine for each in criterion.verdicts)
     answer = "yes" if criterion.met else "not shown"
     return [
         *lines,
@@ -133,10 +135,8 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def _interval(summary: Summary) -> str:
-    if math.isnan(summary.low):
-        return "-"
-    return f"{summary.low:.2f} to {summary.high:.2f}"
+def _range(low: float, high: float) -> str:
+    return "-" if math.isnan(low) else f"{low:.2f} to {high:.2f}"
 
 
 def _number(value: float) -> str:

@@ -1,6 +1,6 @@
 """Means, intervals and paired tests of differences, in float64.
 
-The distributions are SciPy's. Everything is two-sided at 95 % unless said
+Student's distribution is SciPy's. Everything is two-sided at 95 % unless said
 otherwise; what a single value cannot tell is NaN.
 """
 
@@ -17,6 +17,9 @@ from moka.core.errors import OptionError
 __all__ = ["Summary", "holm", "mean_ranks", "paired_t", "summarise", "wilcoxon"]
 
 LEVEL = 0.95
+
+#: Means of whole ratings that are equal differ by less than this rounds to.
+_DECIMALS = 9
 
 
 @dataclass(frozen=True)
@@ -70,23 +73,32 @@ def paired_t(differences: ArrayLike) -> float:
     if error == 0.0:
         return 1.0 if summary.mean == 0.0 else 0.0
     t = abs(summary.mean) / error
-    return 2.0 * float(_scipy("special").stdtr(summary.count - 1, -t))
+    return 2.0 * float(_special().stdtr(summary.count - 1, -t))
 
 
 def wilcoxon(differences: ArrayLike) -> float:
-    """The p-value of the signed-rank test, with Pratt's way with zeros.
+    """The p-value of the signed-rank test, exact also with ties and zeros.
 
-    Wilcoxon 1945; Pratt, "Remarks on zeros and ties in the Wilcoxon signed
-    rank procedures", 1959. It asks less of the ratings than the t-test:
-    that differences can be ranked, not that their means are normal.
+    Wilcoxon 1945; zeros take part in the ranking and are then left out, as
+    in Pratt, "Remarks on zeros and ties in the Wilcoxon signed rank
+    procedures", 1959. It asks less of the ratings than the t-test: that
+    differences can be ranked, not that their means are normal.
     """
-    sample = np.asarray(differences, np.float64)
+    sample = np.round(np.asarray(differences, np.float64), _DECIMALS)
     if sample.size < 2:
         return math.nan
-    if not sample.any():
-        return 1.0
-    test = _scipy("stats").wilcoxon(sample, zero_method="pratt")
-    return float(test.pvalue)
+    # Shared ranks end in a half at most, so that twice a rank is whole.
+    doubled = np.rint(2.0 * _ranks(np.abs(sample))).astype(int)
+    positive = int(doubled[sample > 0.0].sum())
+    # The chance of each sum, if every sign is as likely as the other.
+    chances = np.ones(1)
+    for rank in doubled[sample != 0.0]:
+        grown = np.zeros(chances.size + rank)
+        grown[: chances.size] += 0.5 * chances
+        grown[rank:] += 0.5 * chances
+        chances = grown
+    tails = chances[: positive + 1].sum(), chances[positive:].sum()
+    return min(1.0, 2.0 * float(min(tails)))
 
 
 def holm(values: Sequence[float]) -> list[float]:
@@ -107,26 +119,35 @@ def holm(values: Sequence[float]) -> list[float]:
 def mean_ranks(ratings: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean ranks (R,) of ratings (N, R): 1 is the best, ties share.
 
-    NaN is not ranked.
+    NaN is not ranked; every column needs one that is.
     """
-    ranks = _scipy("stats").rankdata(-ratings, axis=1, nan_policy="omit")
+    ranks = np.full(ratings.shape, np.nan)
+    for row, places in zip(ratings, ranks, strict=True):
+        given = ~np.isnan(row)
+        places[given] = _ranks(-np.round(row[given], _DECIMALS))
     mean: NDArray[np.float64] = np.nanmean(ranks, axis=0)
     return mean
 
 
+def _ranks(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Ranks from 1 for the smallest; equal values share their mean rank."""
+    _, inverse, counts = np.unique(
+        values, return_inverse=True, return_counts=True
+    )
+    shared: NDArray[np.float64] = np.cumsum(counts) - (counts - 1) / 2.0
+    return shared[inverse]
+
+
 def _student_quantile(freedom: int, probability: float) -> float:
-    return float(_scipy("special").stdtrit(freedom, probability))
+    return float(_special().stdtrit(freedom, probability))
 
 
-def _scipy(module: str) -> Any:
+def _special() -> Any:
     try:
-        if module == "stats":
-            from scipy import stats as found
-        else:
-            from scipy import special as found
+        from scipy import special
     except ImportError as error:
         raise OptionError(
             "the analysis needs the package scipy: "
             "pip install 'moka-pbr[bench]'"
         ) from error
-    return found
+    return special
