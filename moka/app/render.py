@@ -67,6 +67,10 @@ def render(
     multiscatter: bool = True,
     suns: str | int = "auto",
     irradiance: str = "auto",
+    ibl: str = "split-sum",
+    ibl_samples: int = 16,
+    reference_samples: int | None = None,
+    max_error: float | None = None,
     backend: str = "auto",
 ) -> Image:
     """Render one picture headless.
@@ -89,7 +93,10 @@ def render(
     environment are lit as lights with the exact BRDF: ``auto``, ``off`` or
     a number at most. ``irradiance`` is ``sh`` (nine spherical harmonics,
     Ramamoorthi and Hanrahan 2001), ``cube``, or ``auto``, which decides by
-    the error of the former.
+    the error of the former. ``ibl`` is how the environment lights:
+    ``split-sum``; ``filtered``, with ``ibl_samples`` view-dependent samples
+    a pixel; ``reference``, which integrates it until ``reference_samples``
+    or an estimated relative standard error of ``max_error``.
 
     Returns an :class:`moka.Image` of linear Rec.709 radiance, float32
     (height, width, 4), top row first.
@@ -106,6 +113,10 @@ def render(
         multiscatter=multiscatter,
         suns=suns,
         irradiance=irradiance,
+        ibl=ibl,
+        ibl_samples=ibl_samples,
+        reference_samples=reference_samples,
+        max_error=max_error,
         float_output=True,
     )
     return render_request(
@@ -183,14 +194,15 @@ def _render_with(
         scene.environment = environment.result()
         commands = CommandList()
         renderer.draw(scene, camera, commands)
+        work = []
         while not renderer.is_complete:
             # What the GPU tells of the error comes with the frame.
-            device.submit(commands).wait()
+            work.append(device.submit(commands).wait())
             commands = CommandList()
             renderer.draw(scene, camera, commands)
         display = renderer.read_display(commands) if want_display else None
         radiance = renderer.read_radiance(commands) if want_pixels else None
-        counters = device.submit(commands).wait()
+        work.append(device.submit(commands).wait())
         info = device.info
         for stage, seconds in device.stage_seconds().items():
             statistics.add_time(stage, seconds)
@@ -203,8 +215,9 @@ def _render_with(
         renderer=info.renderer,
         version=info.version,
     )
-    for name in counters.__slots__:
-        statistics.set_count(name, getattr(counters, name))
+    for counters in work:
+        for name in counters.__slots__:
+            statistics.count(name, getattr(counters, name))
     pixels = None
     if radiance is not None:
         assert radiance.data is not None

@@ -129,6 +129,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "auto, which decides by their error (default: auto)",
     )
     add(
+        "--ibl",
+        metavar="MODE",
+        default="split-sum",
+        help="light of the environment: split-sum, filtered, reference "
+        "(default: split-sum)",
+    )
+    add(
+        "--ibl-samples",
+        metavar="N",
+        type=_count,
+        help="samples a pixel of --ibl filtered (default: 16)",
+    )
+    add(
+        "--reference-samples",
+        metavar="N",
+        type=_count,
+        help="samples a pixel of --ibl reference (default: 512; with "
+        "--max-error 16384 at most)",
+    )
+    add(
+        "--max-error",
+        metavar="E",
+        type=_number,
+        help="relative standard error at which --ibl reference stops",
+    )
+    add(
         "--half",
         action="store_true",
         help="write half floats into .exr files",
@@ -177,10 +203,11 @@ def _request(
     arguments: argparse.Namespace, outputs: list[Path]
 ) -> "RenderRequest":
     from moka.app.render import RenderRequest
-    from moka.renderer.settings import RenderSettings
+    from moka.renderer.settings import DEFAULT_IBL_SAMPLES, RenderSettings
 
     if arguments.environment_intensity < 0:
         raise OptionError("--environment-intensity: must not be negative")
+    _check_lighting(arguments)
     return RenderRequest(
         source=arguments.model,
         environment=arguments.environment,
@@ -198,10 +225,33 @@ def _request(
             multiscatter=arguments.multiscatter == "on",
             suns=arguments.suns,
             irradiance=arguments.irradiance,
+            ibl=arguments.ibl,
+            ibl_samples=arguments.ibl_samples or DEFAULT_IBL_SAMPLES,
+            reference_samples=arguments.reference_samples,
+            max_error=arguments.max_error,
             float_output=any(path.suffix.lower() == ".exr" for path in outputs),
         ),
         backend=arguments.backend,
     )
+
+
+def _check_lighting(arguments: argparse.Namespace) -> None:
+    """Refuse options that the mode of lighting would not look at."""
+    for name, mode in (
+        ("ibl_samples", "filtered"),
+        ("reference_samples", "reference"),
+        ("max_error", "reference"),
+    ):
+        if getattr(arguments, name) is not None and arguments.ibl != mode:
+            option = name.replace("_", "-")
+            raise OptionError(f"--{option}: needs --ibl {mode}")
+    if arguments.ibl == "reference":
+        for option in ("suns", "irradiance"):
+            if getattr(arguments, option) != "auto":
+                raise OptionError(
+                    f"--{option}: --ibl reference samples the environment "
+                    "as it is; leave it out"
+                )
 
 
 def _check_outputs(outputs: list[Path], statistics: Path | None) -> None:

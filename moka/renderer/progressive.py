@@ -199,9 +199,7 @@ class Progressive:
         if ends_batch:
             self._end_batch(buffer, batch, active)
         buffer.bind_framebuffer(targets.resolved)
-        self._draw(
-            buffer, "resolve_samples.frag", self._from_sums, FULLSCREEN
-        )
+        self._draw(buffer, "resolve_samples.frag", self._from_sums, FULLSCREEN)
 
     def forget(self) -> None:
         """Destroy what refers to targets that are about to go."""
@@ -279,9 +277,7 @@ class Progressive:
         bound = tuple(
             TextureBinding(name, handle) for name, handle in maps.items()
         )
-        blocks = (
-            (UniformBinding("Accumulation", uniforms),) if uniforms else ()
-        )
+        blocks = (UniformBinding("Accumulation", uniforms),) if uniforms else ()
         return self._keep(
             self._device.create_bind_group(BindGroupDescriptor(bound, blocks))
         )

@@ -136,7 +136,7 @@ class Renderer:
             self._progressive.begin(
                 self._picture_key(scene, view, lights),
                 targets,
-                self.settings.reference_samples,
+                self.settings.sample_budget,
                 self.settings.max_error,
             )
             view = view.jittered(self._progressive.jitter, self.size)

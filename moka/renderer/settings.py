@@ -14,6 +14,7 @@ IRRADIANCE = ("auto", "sh", "cube")
 MOST_SUNS = 64
 IBL_MODES = ("split-sum", "filtered", "reference")
 
+DEFAULT_IBL_SAMPLES = 16
 # Filtered samples are a loop in one frame; 256 leave nothing to be seen.
 MOST_IBL_SAMPLES = 256
 MOST_REFERENCE_SAMPLES = 1 << 24
@@ -36,9 +37,10 @@ class RenderSettings:
     ``ibl`` is how the environment lights: ``split-sum``; ``filtered``, which
     adds ``ibl_samples`` view-dependent samples; ``reference``, which
     integrates it over several frames until each pixel has
-    ``reference_samples`` samples or, tile by tile, its estimated relative
-    standard error is below ``max_error``. There ``samples`` does not matter:
-    every frame sees another point of each pixel.
+    ``reference_samples`` samples (by default 512, or 16384 where an error
+    decides) or, tile by tile, its estimated relative standard error is below
+    ``max_error``. There ``samples`` does not matter: every frame sees
+    another point of each pixel.
     """
 
     exposure: float = 0.0
@@ -51,8 +53,8 @@ class RenderSettings:
     suns: str | int = "auto"
     irradiance: str = "auto"
     ibl: str = "split-sum"
-    ibl_samples: int = 16
-    reference_samples: int = 512
+    ibl_samples: int = DEFAULT_IBL_SAMPLES
+    reference_samples: int | None = None
     max_error: float | None = None
 
     def __post_init__(self) -> None:
@@ -72,7 +74,7 @@ class RenderSettings:
         _check("lighting mode", self.ibl, IBL_MODES)
         _check_count("filtered samples", self.ibl_samples, MOST_IBL_SAMPLES)
         _check_count(
-            "reference samples", self.reference_samples, MOST_REFERENCE_SAMPLES
+            "reference samples", self.sample_budget, MOST_REFERENCE_SAMPLES
         )
         if self.max_error is not None and not 0 < self.max_error < 1:
             raise OptionError(
@@ -86,6 +88,13 @@ class RenderSettings:
             raise OptionError(
                 f"exposure: {self.exposure} EV is not between -64 and 64"
             )
+
+    @property
+    def sample_budget(self) -> int:
+        """Samples of a pixel after which reference lighting stops."""
+        if self.reference_samples is not None:
+            return self.reference_samples
+        return 512 if self.max_error is None else 16384
 
 
 def _check(what: str, value: str, known: tuple[str, ...]) -> None:

@@ -110,5 +110,5 @@ def expected_patches(
 def _patch(x: int, y: int, normal: Array) -> Primitive:
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]])
     positions = np.zeros((6, 3), np.float32)
-    positions[:, :2] = corners + (x, y)
+    positions[:, :2] = corners + np.array([x, y])
     return Primitive({"POSITION": positions, "NORMAL": np.tile(normal, (6, 1))})
