@@ -13,6 +13,7 @@ from enum import IntFlag, auto
 
 from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
+from moka.core.image_header import pixel_size
 from moka.material.material import AlphaMode, Material, Texture
 
 __all__ = [
@@ -40,7 +41,8 @@ class Feature(IntFlag):
     # Not a pure metal: some light enters the surface and is scattered.
     DIFFUSE = auto()
     EMISSIVE = auto()
-    # Roughness, metalness and occlusion read from one sample of one texture.
+    # Roughness, metalness and occlusion come from one sample of one texture,
+    # as the file has it or put together while decoding.
     PACKED_OCCLUSION = auto()
     POINTS = auto()
 
@@ -109,10 +111,7 @@ def describe_material(
         for slot, texture in slots.items()
         if _uv_attribute(material, slot, texture) in attributes
     }
-    packed = _shares_sample(
-        slots.get("occlusion"), slots.get("metallic_roughness")
-    )
-    if packed:
+    if _shares_sample(slots.get("occlusion"), slots.get("metallic_roughness")):
         del slots["occlusion"]
         features |= Feature.PACKED_OCCLUSION
     for texture in slots.values():
@@ -182,11 +181,18 @@ def _uv_attribute(material: Material, slot: str, texture: Texture) -> str:
 
 
 def _shares_sample(first: Texture | None, second: Texture | None) -> bool:
+    """Whether both can be read from one sample of one texture.
+
+    They are one image already, or of one size and can be put together.
+    """
     return (
         first is not None
         and second is not None
-        and first.image.identity == second.image.identity
         and first.sampler == second.sampler
         and first.uv_set == second.uv_set
         and first.transform == second.transform
+        and (
+            first.image.identity == second.image.identity
+            or pixel_size(first.image) == pixel_size(second.image) is not None
+        )
     )

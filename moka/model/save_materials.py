@@ -12,7 +12,7 @@ from moka.material.material import (
     TextureTransform,
 )
 from moka.model.binary import BinaryWriter
-from moka.model.image_header import media_type
+from moka.core.image_header import media_type
 from moka.model.images import MAGNIFY, MINIFY, WRAPS
 
 if TYPE_CHECKING:

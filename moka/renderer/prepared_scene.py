@@ -97,20 +97,32 @@ class SceneMaterials:
                 description = describe_material(
                     material, primitive.attributes, primitive.topology
                 )
-                slots = texture_slots(material)
                 known[key] = (
                     description,
-                    {
-                        use.slot: textures.request(use.slot, slots[use.slot])
-                        for use in description.textures
-                    },
-                )
-                self.sampled.update(
-                    id(slots[use.slot].image) for use in description.textures
+                    self._request(material, description, textures),
                 )
             description, requests = known[key]
             self.descriptions.append(description)
             self.requests.append(requests)
+
+    def _request(
+        self,
+        material: Material,
+        description: MaterialDescription,
+        textures: TexturePool,
+    ) -> dict[str, TextureRequest]:
+        slots = texture_slots(material)
+        packed = Feature.PACKED_OCCLUSION in description.features
+        requests = {}
+        for use in description.textures:
+            images = [slots[use.slot].image]
+            if packed and use.slot == "metallic_roughness":
+                images.append(slots["occlusion"].image)
+            self.sampled.update(map(id, images))
+            requests[use.slot] = textures.request(
+                use.slot, slots[use.slot], *images[1:]
+            )
+        return requests
 
     @property
     def has_lit(self) -> bool:

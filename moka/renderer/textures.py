@@ -6,6 +6,7 @@ the render thread only copies.
 """
 
 import os
+import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -43,20 +44,16 @@ COLOUR_SLOTS = frozenset({"base_colour", "emissive"})
 
 @dataclass(frozen=True, slots=True)
 class TextureRequest:
-    """An image and how the GPU is to hold it."""
+    """An image and how the GPU is to hold it.
+
+    ``occlusion`` is the identity of another image whose red channel takes
+    the place of this one's.
+    """
 
     identity: str
     is_colour: bool
     has_levels: bool
-
-    @classmethod
-    def of(cls, slot: str, texture: Texture) -> "TextureRequest":
-        """What slot ``slot`` of a material needs of ``texture``."""
-        return cls(
-            texture.image.identity,
-            slot in COLOUR_SLOTS,
-            texture.sampler.mipmap is not MipmapMode.NONE,
-        )
+    occlusion: str | None = None
 
 
 class TexturePool:
@@ -70,55 +67,62 @@ class TexturePool:
             max_workers=max(2, os.cpu_count() or 1),
             thread_name_prefix="moka-decode",
         )
-        self._decoded: dict[str, Future[NDArray[Any]]] = {}
+        self._decoders: dict[str, _Decoder] = {}
         self._pending: dict[TextureRequest, Future[Handle]] = {}
 
-    def request(self, slot: str, texture: Texture) -> TextureRequest:
-        """Begin to decode a texture; :meth:`handle` waits for it."""
-        request = TextureRequest.of(slot, texture)
+    def request(
+        self,
+        slot: str,
+        texture: Texture,
+        occlusion: EncodedImage | None = None,
+    ) -> TextureRequest:
+        """Begin to decode a texture; :meth:`handle` waits for it.
+
+        ``occlusion`` is an image of the same size to read occlusion from,
+        if it is not the texture's own.
+        """
+        image = texture.image
+        if occlusion is not None and occlusion.identity == image.identity:
+            occlusion = None
+        request = TextureRequest(
+            image.identity,
+            slot in COLOUR_SLOTS,
+            texture.sampler.mipmap is not MipmapMode.NONE,
+            None if occlusion is None else occlusion.identity,
+        )
         if request not in self._pending:
-            decoded = self._decode(texture.image)
+            decoders = [
+                self._decoders.setdefault(each.identity, _Decoder(each))
+                for each in (image, occlusion)
+                if each is not None
+            ]
             self._pending[request] = self._workers.submit(
-                self._make, request, decoded, texture.image.where
+                self._make, request, decoders
             )
-            self._statistics.count("textures_loaded")
+            self._statistics.count("textures_loaded", len(decoders))
         return request
 
     def handle(self, request: TextureRequest) -> Handle:
         """The texture of a request; raises ImageFileError for a bad image."""
         handle = self._pending[request].result()
-        self._decoded.pop(request.identity, None)
+        for identity in (request.identity, request.occlusion):
+            self._decoders.pop(identity or "", None)
         return handle
 
     def close(self) -> None:
         """Stop the workers; textures live as long as their device."""
         self._workers.shutdown(wait=True, cancel_futures=True)
 
-    def _decode(self, image: EncodedImage) -> "Future[NDArray[Any]]":
-        future = self._decoded.get(image.identity)
-        if future is None:
-            future = self._workers.submit(self._timed_decode, image)
-            self._decoded[image.identity] = future
-        return future
-
-    def _timed_decode(self, image: EncodedImage) -> NDArray[Any]:
-        from moka.core.decode import decode_image
-
-        with self._statistics.stage("decode"):
-            return decode_image(image)
-
     def _make(
-        self,
-        request: TextureRequest,
-        decoded: "Future[NDArray[Any]]",
-        where: str,
+        self, request: TextureRequest, decoders: "list[_Decoder]"
     ) -> Handle:
         from moka.core.mip_levels import reduce_levels
 
-        # Decoding was submitted before, so a worker is on it or done.
-        texels = decoded.result()
         with self._statistics.stage("decode"):
+            texels, *occlusion = (decoder.texels() for decoder in decoders)
             texels, pixels = _arrange(texels, is_colour=request.is_colour)
+            if occlusion:
+                texels, pixels = _with_red_of(texels, occlusion[0])
             levels = (
                 reduce_levels(texels, srgb=request.is_colour)
                 if request.has_levels
@@ -127,10 +131,51 @@ class TexturePool:
         height, width = texels.shape[:2]
         return self._device.create_texture(
             TextureDescriptor(
-                pixels, width, height, levels=len(levels), label=where
+                pixels,
+                width,
+                height,
+                levels=len(levels),
+                label=decoders[0].image.where,
             ),
             levels,
         )
+
+
+class _Decoder:
+    """Decodes an image once, in whichever worker asks first."""
+
+    def __init__(self, image: EncodedImage) -> None:
+        self.image = image
+        self._lock = threading.Lock()
+        self._texels: NDArray[Any] | None = None
+
+    def texels(self) -> NDArray[Any]:
+        """The texels (H, W, C); raises ImageFileError."""
+        from moka.core.decode import decode_image
+
+        with self._lock:
+            if self._texels is None:
+                self._texels = decode_image(self.image)
+            return self._texels
+
+
+def _with_red_of(
+    texels: NDArray[Any], occlusion: NDArray[Any]
+) -> tuple[NDArray[Any], PixelFormat]:
+    """Texels whose red channel is that of another image of their size."""
+    kind = max(texels.dtype, occlusion.dtype)
+    red, *others = (
+        channel
+        if channel.dtype == kind
+        # 255 becomes 65 535.
+        else channel.astype(kind) * kind.type(257)
+        for channel in (
+            occlusion[:, :, 0],
+            *(texels[:, :, index] for index in range(1, texels.shape[2])),
+        )
+    )
+    packed = np.stack([red, *others], axis=2)
+    return packed, _DATA_FORMATS[kind.str[1:], packed.shape[2]]
 
 
 def _arrange(

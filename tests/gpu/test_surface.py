@@ -15,6 +15,7 @@ from moka.commands.descriptors import (
 )
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
+from moka.material.description import Feature, describe_material
 from moka.material.material import (
     AlphaMode,
     Material,
@@ -184,6 +185,31 @@ def test_occlusion_takes_from_indirect_light_by_its_strength(
         got = centre(draw_radiance(egl_device, scene, square_camera()))
         expected = 1 + strength * (128 / 255 - 1)
         assert got == pytest.approx(expected, rel=0.01)
+
+
+def test_occlusion_packed_while_decoding_makes_the_same_picture(
+    egl_device: GraphicsDevice,
+) -> None:
+    """Two images of one size become one texture; of two sizes, they stay."""
+    generator = np.random.default_rng(8)
+    occlusion = generator.integers(0, 256, (4, 4, 3)).astype(np.uint8)
+    roughness = generator.integers(0, 256, (4, 4, 3)).astype(np.uint8)
+    larger = occlusion.repeat(2, axis=0).repeat(2, axis=1)
+    deep = np.stack([roughness[..., 1]] * 3, axis=-1)
+    pictures = []
+    for red, packs in ((occlusion, True), (larger, False), (deep, True)):
+        material = Material(
+            metallic_roughness_texture=Texture(encoded(roughness), NEAREST),
+            occlusion_texture=Texture(encoded(red), NEAREST),
+        )
+        base = quad(2.0)
+        description = describe_material(material, base.attributes)
+        assert (Feature.PACKED_OCCLUSION in description.features) == packs
+        assert len(description.textures) == (1 if packs else 2)
+        scene = scene_of([(base, material, np.eye(4))], FURNACE)
+        pictures.append(draw_radiance(egl_device, scene, square_camera()))
+    assert np.allclose(pictures[0], pictures[1], atol=1e-6)
+    assert not np.allclose(pictures[0], pictures[2], atol=1e-2)
 
 
 def test_mask_cuts_at_the_cutoff_and_does_not_blend(

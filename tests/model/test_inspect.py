@@ -28,7 +28,7 @@ from moka.model import (
     load_model,
     model_of,
 )
-from moka.model.image_header import media_type, pixel_size
+from moka.core.image_header import media_type, pixel_size
 from tests.model.files import glb, triangle
 
 
