@@ -10,9 +10,13 @@
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg4d.
 uvec4 hash(uvec4 v) {
     v = v * 1664525u + 1013904223u;
-    v += v.yzxy * v.wxyz;
-    v ^= v >> 16u;
-    v += v.yzxy * v.wxyz;
+    for (int i = 0; i < 2; ++i) {
+        v.x += v.y * v.w;
+        v.y += v.z * v.x;
+        v.z += v.x * v.y;
+        v.w += v.y * v.z;
+        if (i == 0) v ^= v >> 16u;
+    }
     return v;
 }
 
