@@ -117,7 +117,7 @@ def _verdict(criterion: Criterion) -> list[str]:
     answer = "yes" if criterion.met else "not shown"
     return [
         *lines,
-        f"rated like {engines} within {criterion.margin:g} points: {answer}",
+        f"rated like {engines} with a margin of {criterion.margin:g}: {answer}",
     ]
 
 

@@ -71,7 +71,7 @@ def test_answers_are_analysed_into_files(
     assert capsys.readouterr().out.endswith(
         "moka - unity: +0.00, 90 % interval 0.00 to 0.00: equivalent\n"
         "moka - frostbite: +0.00, 90 % interval 0.00 to 0.00: equivalent\n"
-        "rated like unity, frostbite within 1 points: yes\n"
+        "rated like unity, frostbite with a margin of 1: yes\n"
     )
     assert (folder / "ratings.csv").read_text().count("\n") == 19
     assert (folder / "plot.png").stat().st_size > 1000

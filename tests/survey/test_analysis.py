@@ -168,7 +168,7 @@ def test_the_text_has_a_row_each() -> None:
         each.name for each in noisy().renderers
     ]
     assert "moka - engine: " in text
-    assert "rated like engine within 1 points: " in text
+    assert "rated like engine with a margin of 1: " in text
     assert len({len(line) for line in lines[2:6]}) == 1
 
 
