@@ -8,51 +8,24 @@ writes a PNG and, if asked, an EXR:
 
     python tests/benchmarks/bare_moderngl.py MODEL ENVIRONMENT -o out.png
 
-The order of work is what makes it fast on few cores. Whatever takes long
-runs without the GIL beside the imports: a thread loads the driver, others
-decode and reduce the images, and GL calls that wait go through ctypes.
+The order of work is what makes it fast on few cores: threads decode and
+reduce the images while Python imports and the context is made, each image is
+uploaded when it is there, and the environment is filtered meanwhile. GL calls
+that wait or that ModernGL lacks go through ctypes, which releases the GIL.
 """
 
-# Imports stand in the order in which other threads need them.
+# The clock starts before the imports.
 # ruff: noqa: E402
 
 import time
 
 START = time.perf_counter()
 
-import ctypes
-import os
-import threading
-
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy's would spin
-
-POINTER = ctypes.c_void_p
-
-
-def load_driver() -> None:
-    """Initialise EGL's first device as ModernGL will, but without the GIL."""
-    egl = ctypes.CDLL("libEGL.so.1")
-    egl.eglGetProcAddress.restype = POINTER
-    query = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
-    device, count = POINTER(), ctypes.c_int()
-    if query:
-        ctypes.CFUNCTYPE(ctypes.c_uint, ctypes.c_int, POINTER, POINTER)(query)(
-            1, ctypes.byref(device), ctypes.byref(count)
-        )
-    egl.eglGetPlatformDisplay.restype = POINTER
-    egl.eglGetPlatformDisplay.argtypes = [ctypes.c_uint, POINTER, POINTER]
-    egl.eglInitialize.argtypes = [POINTER, POINTER, POINTER]
-    platform_device = 0x313F
-    display = egl.eglGetPlatformDisplay(platform_device, device, None)
-    egl.eglInitialize(display, None, None)
-
-
-driver = threading.Thread(target=load_driver)
-driver.start()
-
 import argparse
+import ctypes
 import json
 import math
+import os
 import struct
 import sys
 import zlib
@@ -64,10 +37,13 @@ from typing import Any
 
 from PIL import Image
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # NumPy's would spin
+
 CUBE_SIZE, LEVELS, SAMPLES, IRRADIANCE_SIZE = 256, 6, 64, 16
 TABLE_SIZE, TABLE_SAMPLES = 32, 128
 FIELD_OF_VIEW = math.radians(45)
 HALF_LIMIT = 60000.0
+POINTER = ctypes.c_void_p
 # Directions of s, t and the centre of each face, +X to -Z, as columns.
 FACES = (
     (0, 0, -1, 0, -1, 0, 1, 0, 0), (0, 0, 1, 0, -1, 0, -1, 0, 0),
@@ -809,7 +785,6 @@ def main() -> None:
         import moderngl
         from glcontext import egl
 
-        driver.join()
         ctx = moderngl.create_context(
             context=egl.create_context(
                 mode="standalone",
