@@ -10,7 +10,6 @@ that holds its distance, so that they are drawn from back to front.
 import numpy as np
 
 import moka
-from moka.commands import INSTANCE, RasterState, SortKey, Stage
 from moka.commands.descriptors import (
     Attachment,
     BindGroupDescriptor,
@@ -21,6 +20,7 @@ from moka.commands.descriptors import (
     MeshDescriptor,
     PixelFormat,
     ProgramDescriptor,
+    RasterState,
     ShaderText,
     TextureDescriptor,
     Topology,
@@ -28,6 +28,8 @@ from moka.commands.descriptors import (
     VertexAttribute,
     VertexLayout,
 )
+from moka.commands.draws import INSTANCE
+from moka.commands.sort_key import SortKey, Stage
 
 VERTEX = """#version 330 core
 layout(std140) uniform Colours { vec4 colours[3]; };

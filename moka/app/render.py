@@ -151,19 +151,22 @@ def render_request(
     ``display`` bytes, or both.
     """
     _check_size(request.size)
-    with ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader:
-        environment = reader.submit(_load_environment, request, statistics)
-        from moka.graphics.device import GraphicsDevice
+    # In this order: the context is made and the map is read by other
+    # threads while this one imports what the rest of the work needs.
+    from moka.graphics.device import GraphicsDevice
 
-        with GraphicsDevice.open(request.backend, debug=debug) as device:
-            return _render_with(
-                device,
-                request,
-                environment,
-                statistics,
-                want_pixels=want_pixels,
-                want_display=want_display,
-            )
+    with (
+        GraphicsDevice.open(request.backend, debug=debug) as device,
+        ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader,
+    ):
+        return _render_with(
+            device,
+            request,
+            reader.submit(_load_environment, request, statistics),
+            statistics,
+            want_pixels=want_pixels,
+            want_display=want_display,
+        )
 
 
 def _render_with(

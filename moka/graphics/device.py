@@ -229,18 +229,20 @@ class GraphicsDevice:
         *,
         sort: bool = True,
         stage: str = "frame",
+        paced: bool = True,
     ) -> Frame:
         """Hand a frame over, in key order or as recorded.
 
         Its time counts for ``stage`` in :meth:`stage_seconds`. Waits until
-        at most one other frame is in flight. Raises CommandError for
-        handles that are destroyed or another device's.
+        at most one other frame is in flight, unless it is not ``paced``:
+        work that is done once and needs no picture before it. Raises
+        CommandError for handles that are destroyed or another device's.
         """
         recording = commands.finish(sort=sort)
         for handles in recording.handles:
             if self._checked.get(handles) != self._releases:
                 self._check(handles)
-        if self._in_flight is not None:
+        if paced and self._in_flight is not None:
             self._in_flight.wait()
         frame = Frame(
             self._thread,
@@ -248,7 +250,8 @@ class GraphicsDevice:
                 lambda backend: backend.execute(recording, stage)
             ),
         )
-        self._in_flight = frame
+        if paced:
+            self._in_flight = frame
         return frame
 
     def submit_and_present(

@@ -444,7 +444,9 @@ class _Jobs:
 
     def run(self) -> None:
         """Submit the passes and let go of what only they needed."""
-        self._device.submit(self._commands, sort=False, stage="environment")
+        self._device.submit(
+            self._commands, sort=False, stage="environment", paced=False
+        )
         # Users of a resource go before it.
         self._device.destroy(*reversed(self._scratch))
 

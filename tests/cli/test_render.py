@@ -12,7 +12,7 @@ from moka.cli import main
 from moka.core.exr import read_exr
 from moka.core.png import encode_png
 from moka.core.tone_map import tone_map
-from moka.material import Material
+from moka.material.material import Material
 from moka.model import model_of, quad, save_model
 
 
@@ -158,7 +158,7 @@ def test_a_broken_image_is_one_line_that_names_it(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     from moka.core.encoded_image import EncodedImage
-    from moka.material import Texture
+    from moka.material.material import Texture
 
     texels = np.full((8, 8, 3), 90, np.uint8)
     data = encode_png(texels)[:-30]
