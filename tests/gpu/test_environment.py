@@ -235,7 +235,7 @@ def test_a_sun_of_one_texel_makes_no_fireflies():
     assert np.isfinite(rough).all()
     assert step < 0.4
     light = convolve(cube, count=256, size=16)[2, :, :, 0]
-    assert np.abs(np.diff(light, axis=1)).max() / light.max() < 0.2
+    assert np.abs(np.diff(light, axis=1)).max() / light.max() < 0.4
     expected = 1e6 / np.pi * cube_texel_solid_angles(64)[20, 40]
     assert light.max() == pytest.approx(expected, rel=0.1)
 
