@@ -237,7 +237,7 @@ def test_a_sun_of_one_texel_makes_no_fireflies():
     light = convolve(cube, count=256, size=16)[2, :, :, 0]
     assert np.abs(np.diff(light, axis=1)).max() / light.max() < 0.4
     expected = 1e6 / np.pi * cube_texel_solid_angles(64)[20, 40]
-    assert light.max() == pytest.approx(expected, rel=0.1)
+    assert light.max() == pytest.approx(expected, rel=0.25)
 
 
 @pytest.mark.parametrize("axis", range(6))
