@@ -1,0 +1,53 @@
+"""Measure moka: errors against truth, times, work done."""
+
+import argparse
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+
+__all__ = ["add_arguments", "execute"]
+
+# Each is a module of moka.bench with add_arguments and execute, which imports
+# what is heavy where it is used: all of them are imported for their options.
+_BENCHMARKS = {
+    "accuracy": "Error of every mode of lighting against time.",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add a subcommand for each benchmark.
+
+    All of them have ``--json`` and ``--plot``; the benchmark's own options
+    come from its ``add_arguments(parser)``, its results and the exit code
+    from its ``execute(arguments)``.
+    """
+    commands = parser.add_subparsers(
+        title="benchmarks", metavar="NAME", required=True
+    )
+    for name, summary in _BENCHMARKS.items():
+        command = commands.add_parser(
+            name, help=summary, description=summary, allow_abbrev=False
+        )
+        add = command.add_argument
+        add(
+            "--debug",
+            action="store_true",
+            default=argparse.SUPPRESS,
+            help="show the traceback of an error",
+        )
+        add("--json", metavar="PATH", type=Path, help="write the results")
+        add(
+            "--plot",
+            metavar="PATH",
+            type=Path,
+            help="draw the results, as .png, .svg or .pdf",
+        )
+        module = import_module(f"moka.bench.{name}")
+        module.add_arguments(command)
+        command.set_defaults(run=module.execute)
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Run the chosen benchmark; raises MokaError."""
+    run: Callable[[argparse.Namespace], int] = arguments.run
+    return run(arguments)
