@@ -107,13 +107,17 @@ class EnvironmentMaps:
     ``map`` is the equirectangular map with its suns, ``specular`` the
     prefiltered cube, whose level 0 is the mirror image of that map and
     whose other levels, of :func:`level_roughness`, lack the suns.
-    ``irradiance`` is a cube of E / pi, without them too.
+    ``irradiance`` is a cube of E / pi, without them too; ``radiance`` is the
+    environment itself without them, with levels, as filtered lighting
+    samples it. ``importance`` is the table by which reference lighting
+    samples ``map``.
     """
 
     map: Handle | None = None
     specular: Handle | None = None
     specular_levels: int = 1
     irradiance: Handle | None = None
+    radiance: Handle | None = None
     importance: Handle | None = None
     resources: list[Handle] = field(default_factory=list)
 
@@ -193,10 +197,13 @@ class Preintegrator:
         background: bool,
         specular: bool,
         irradiance: bool,
+        radiance: bool = False,
     ) -> EnvironmentMaps:
         """Make what is asked for of ``environment``.
 
-        ``irradiance`` asks for a cube of it.
+        ``irradiance`` asks for a cube of it; ``radiance``, with one of the
+        two before, to keep the cube that they are made from. Of a uniform
+        environment there is none.
         """
         maps = EnvironmentMaps()
         pixels = environment.full
@@ -234,6 +241,9 @@ class Preintegrator:
             )
         if irradiance:
             maps.irradiance = self._convolve(jobs, source, size, maps)
+        if radiance:
+            maps.radiance = jobs.kept(source)
+            maps.resources.append(source)
         jobs.run()
         return maps
 
@@ -349,6 +359,11 @@ class _Jobs:
     def scratch(self, resource: Handle) -> Handle:
         """``resource``, which lives until :meth:`run`."""
         self._scratch.append(resource)
+        return resource
+
+    def kept(self, resource: Handle) -> Handle:
+        """``resource``, which :meth:`run` does not destroy after all."""
+        self._scratch.remove(resource)
         return resource
 
     def scratch_cube(self, size: int, levels: int) -> Handle:

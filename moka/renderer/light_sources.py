@@ -117,6 +117,7 @@ class LightSources:
                     background=background,
                     specular=specular,
                     irradiance=irradiance and self.harmonics is None,
+                    radiance=ibl == "filtered" and specular,
                 )
                 if sampled:
                     self._add_importance(split)

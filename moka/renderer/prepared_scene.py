@@ -260,6 +260,7 @@ class PreparedScene:
                 for name, handle, sampler in (
                     ("specular_cube", shared.maps.specular, CUBE_SAMPLER),
                     ("irradiance_cube", shared.maps.irradiance, CUBE_SAMPLER),
+                    ("radiance_cube", shared.maps.radiance, CUBE_SAMPLER),
                     ("importance_table", shared.maps.importance, MAP_SAMPLER),
                     ("environment_map", sampled_map, MAP_SAMPLER),
                     ("brdf_table", shared.table, TABLE_SAMPLER),

@@ -256,7 +256,10 @@ class Renderer:
             settings.multiscatter,
             settings.float_output or self._accumulates,
             self._sources.harmonics is not None,
-            settings.ibl,
+            # Of uniform light split-sum is exact, and there is no such cube.
+            "split-sum"
+            if settings.ibl == "filtered" and maps.radiance is None
+            else settings.ibl,
         )
         key = (self._materials_key, lighting)
         if self._prepared is not None and self._prepared_key == key:

@@ -72,6 +72,7 @@ float sun_weight(float roughness) {
 }
 
 // MOKA_IBL_REFERENCE has another environment_light.
+#include "include/filtered.glsl"
 #include "include/reference.glsl"
 
 #if defined(MOKA_ENVIRONMENT) && !defined(MOKA_IBL_REFERENCE)
@@ -130,8 +131,16 @@ vec3 environment_light(Surface surface) {
         specular_cube,
         turn_into_environment(seen, environment_turn),
         specular_level(surface.roughness)).rgb;
-#ifdef MOKA_IRRADIANCE
     float n_dot_v = clamp_n_dot_v(dot(surface.normal, surface.view));
+#ifdef MOKA_IBL_FILTERED
+    float weight = difference_weight(n_dot_v, surface.roughness);
+    if (weight > 0.0) {
+        light += specular * weight * lobe_difference(surface, n_dot_v, seen);
+        // It is an estimate, and light cannot be less than none.
+        light = max(light, 0.0);
+    }
+#endif
+#ifdef MOKA_IRRADIANCE
     vec3 diffuse = base_share(surface)
         * diffuse_albedo(n_dot_v, surface.diffuse_colour, surface.roughness);
     light += diffuse * environment_irradiance(
@@ -154,13 +163,18 @@ float distance_attenuation(float squared_distance, float inverse_range) {
     return window / max(squared_distance, 1e-8);
 }
 
-// The lobe in which a light is seen. A sun is a disc of angular radius R;
-// the lobe that reflects it has a peak lower by 1 + R^2 / (4 alpha^2) for
-// R << alpha, and the radiance of the disc itself for alpha << R. A lobe of
-// this width has both, and all of the energy.
-float light_alpha(float roughness, float angular_radius) {
+// The lobe in which a sun, a disc of angular radius R, is seen: its peak is
+// lower by 1 + R^2 / (4 alpha^2) for R << alpha, and is the radiance of the
+// disc itself for alpha << R. A lobe of this width has both, and all of the
+// energy. As long as the sun is also in the map it is as wide as there, a
+// texel more, lest the highlight be brighter than the image that it follows;
+// level 0 has 8 * 2^specular_levels texels to the side of a cube, which is 2.
+float sun_alpha(float roughness, float angular_radius) {
     float alpha = alpha_from_roughness(roughness);
-    return sqrt(alpha * alpha + 0.25 * angular_radius * angular_radius);
+    float texel = 0.25 * exp2(-specular_levels);
+    float disc = angular_radius * angular_radius
+        + (1.0 - sun_weight(roughness)) * texel * texel;
+    return sqrt(alpha * alpha + 0.25 * disc);
 }
 
 // With energy compensation a light is reflected as the same light in an
@@ -198,11 +212,12 @@ vec3 punctual_light(Surface surface) {
 #else
         vec3 share = 1.0 - fresnel;
 #endif
-        float lobe = specular_lobe(
-            angles, light_alpha(surface.roughness, light.angular_radius), k);
-        if (light.angular_radius > 0.0) {
-            lobe *= sun_weight(surface.roughness);
-        }
+        bool is_sun = light.angular_radius > 0.0;
+        float alpha = is_sun
+            ? sun_alpha(surface.roughness, light.angular_radius)
+            : alpha_from_roughness(surface.roughness);
+        float lobe = specular_lobe(angles, alpha, k);
+        if (is_sun) lobe *= sun_weight(surface.roughness);
         vec3 reflected = fresnel * scale * lobe
             + share * diffuse_brdf(
                 angles, surface.diffuse_colour, surface.roughness);
