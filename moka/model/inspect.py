@@ -7,9 +7,9 @@ from typing import Any
 from moka.commands.descriptors import Topology
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
+from moka.core.image_header import pixel_size
 from moka.material.material import Material
 from moka.model.cameras import CameraDescription, Perspective
-from moka.core.image_header import pixel_size
 from moka.model.lights import PunctualLight
 from moka.model.model import Model
 

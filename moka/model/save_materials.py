@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 from moka.commands.descriptors import SamplerDescriptor
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ModelError
+from moka.core.image_header import media_type
 from moka.material.material import (
     AlphaMode,
     Material,
@@ -12,7 +13,6 @@ from moka.material.material import (
     TextureTransform,
 )
 from moka.model.binary import BinaryWriter
-from moka.core.image_header import media_type
 from moka.model.images import MAGNIFY, MINIFY, WRAPS
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ from PIL import Image
 from moka.commands.descriptors import Topology
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
+from moka.core.image_header import media_type, pixel_size
 from moka.material.material import AlphaMode, Material, Texture
 from moka.model import (
     CameraDescription,
@@ -28,7 +29,6 @@ from moka.model import (
     load_model,
     model_of,
 )
-from moka.core.image_header import media_type, pixel_size
 from tests.model.files import glb, triangle
 
 
