@@ -21,6 +21,7 @@ _COMMANDS = {
     "info": "Say what a glTF file holds and what of it moka does not draw.",
     "compare": "Compare a picture with a reference: FLIP, PSNR and RMSE.",
     "survey": "Make a blind survey of pictures, and analyse its answers.",
+    "bench": "Measure moka: errors against truth, times, work done.",
     "doctor": "Say which OpenGL contexts work here and what is missing.",
 }
 
