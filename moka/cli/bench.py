@@ -11,6 +11,7 @@ __all__ = ["add_arguments", "execute"]
 # what is heavy where it is used: all of them are imported for their options.
 _BENCHMARKS = {
     "accuracy": "Error of every mode of lighting against time.",
+    "frame": "Time of a frame of a steady orbit around a model.",
 }
 
 

@@ -1,0 +1,118 @@
+"""Time of a frame of a steady orbit around a model."""
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from moka.bench.options import add_scene_options, count, number
+
+if TYPE_CHECKING:
+    from moka.bench.steady import FrameTimes
+
+__all__ = ["add_arguments", "execute"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``moka bench frame``."""
+    add_scene_options(parser, (1024, 1024))
+    parser.add_argument(
+        "--frames",
+        metavar="N",
+        type=count,
+        default=60,
+        help="how many are timed (default: 60)",
+    )
+    parser.add_argument(
+        "--warm-up",
+        metavar="N",
+        type=count,
+        default=3,
+        help="frames before them that are not (default: 3)",
+    )
+    parser.add_argument(
+        "--yaw-per-frame",
+        metavar="DEG",
+        type=number,
+        default=1.0,
+        help="how far the camera goes around in a frame (default: 1)",
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Measure, print a table and write what was asked for."""
+    from moka.bench.measure import spread
+    from moka.bench.results import check_output, format_table, write_json
+
+    check_output(arguments.json, arguments.plot)
+    times = _measure(arguments)
+    rows = [
+        [name, series.median, series.quartile_1, series.quartile_3, series.p95]
+        for name, series in (
+            ("frame", spread(times.frame_ms)),
+            ("of it submit", spread(times.submit_ms)),
+        )
+    ]
+    header = ["ms", "median", "quartile 1", "quartile 3", "p95"]
+    print(format_table(header, rows))
+    for name, value in times.counts.items():
+        print(f"{name:24} {value}")
+    if arguments.json:
+        write_json(_result(times), arguments.json)
+    if arguments.plot:
+        from moka.bench.plot import plot_histogram
+
+        plot_histogram(
+            {"frame": times.frame_ms, "submit": times.submit_ms},
+            arguments.plot,
+        )
+    return 0
+
+
+def _result(times: "FrameTimes") -> dict[str, Any]:
+    """What the JSON file holds."""
+    from moka.bench.measure import spread
+
+    frame = spread(times.frame_ms)
+    return {
+        "frame_ms": {
+            "median": round(frame.median, 4),
+            "p95": round(frame.p95, 4),
+            "submit_median": round(spread(times.submit_ms).median, 4),
+        },
+        "counts": times.counts,
+    }
+
+
+def _measure(arguments: argparse.Namespace) -> "FrameTimes":
+    from moka.bench.steady import Orbit, time_frames
+    from moka.core.resources import asset_folder
+    from moka.graphics.device import GraphicsDevice
+    from moka.lighting.environment import load_environment
+    from moka.model.load import load_model
+    from moka.renderer.renderer import Renderer
+    from moka.renderer.settings import RenderSettings
+    from moka.scene.camera import Camera
+    from moka.scene.scene import Scene
+
+    scene = Scene()
+    scene.add(load_model(arguments.model or asset_folder() / "demo.glb"))
+    scene.environment = load_environment(arguments.environment)
+    camera = Camera()
+    width, height = arguments.size
+    step = math.radians(arguments.yaw_per_frame)
+    settings = RenderSettings(samples=arguments.samples)
+    with GraphicsDevice.open(
+        arguments.backend, debug=arguments.debug
+    ) as device:
+        renderer = Renderer(device, arguments.size, settings)
+        try:
+            return time_frames(
+                renderer,
+                scene,
+                camera,
+                Orbit(scene, camera, width / height, step),
+                arguments.frames,
+                arguments.warm_up,
+            )
+        finally:
+            renderer.close()
