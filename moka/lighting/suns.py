@@ -138,10 +138,10 @@ def _sun(
     weights /= weights.sum()
     mean = weights @ directions
     length = float(np.linalg.norm(mean))
-    # A disc of radius R has a mean squared angle of R^2 / 2 from its centre,
-    # and 1 - length is half of that of the texels' centres; a texel itself
-    # counts as a disc of its size.
-    spread = 4.0 * max(1.0 - length, 0.0) + weights @ areas / np.pi
+    # A disc of radius R has a mean squared angle of R^2 / 2 from its centre.
+    # That of the texels' centres is twice 1 - length; and a texel, which a
+    # lookup spreads over two of its widths, adds a third of its area.
+    spread = 4.0 * max(1.0 - length, 0.0) + weights @ areas * 2.0 / 3.0
     x, y, z = (mean / length).tolist()
     red, green, blue = irradiance.tolist()
     return Sun((x, y, z), (red, green, blue), float(np.sqrt(spread)))

@@ -55,11 +55,11 @@ float base_share(Surface surface) {
 
 // The level of the prefiltered cube for a roughness: quadratic, so that the
 // narrow lobes, which differ most, get their share of levels. Below level 1,
-// where levels 0 and 1 are mixed, it rises slowly at first: a lobe much
-// narrower than that of level 1 is a mirror's.
+// where levels 0 and 1 are mixed, it begins like roughness^4, as the variance
+// of a lobe does: one much narrower than that of level 1 is a mirror's.
 float specular_level(float roughness) {
     float level = specular_levels * roughness * (2.0 - roughness);
-    return level < 1.0 ? smoothstep(0.0, 1.0, level) : level;
+    return level < 1.0 ? smoothstep(0.0, 1.0, level * level) : level;
 }
 
 // How much of a sun is a light. Level 0 of the specular cube is the mirror

@@ -63,7 +63,7 @@ def test_a_sun_of_one_texel(row, column, radiance):
     expected = equirectangular_directions(WIDTH, HEIGHT)[row, column]
     assert sun.direction == pytest.approx(expected, abs=1e-6)
     area = equirectangular_solid_angles(WIDTH, HEIGHT)[row, 0]
-    assert sun.angular_radius == pytest.approx(np.sqrt(area / np.pi), rel=1e-3)
+    assert sun.angular_radius == pytest.approx(np.sqrt(area * 2 / 3), rel=1e-3)
     changed = (base != pixels).any(axis=2)
     assert changed.sum() == 1
 
