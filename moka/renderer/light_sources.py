@@ -221,5 +221,6 @@ def _sun_rows(scene: Scene, suns: tuple[Sun, ...]) -> NDArray[np.void]:
             sun.irradiance
         )
         row["angle_offset"] = 1.0
-        row["angular_radius"] = sun.angular_radius
+        # Above 0, by which the shader knows a sun: it is in the map as well.
+        row["angular_radius"] = max(sun.angular_radius, 1e-6)
     return rows

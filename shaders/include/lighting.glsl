@@ -113,8 +113,7 @@ vec3 environment_irradiance(vec3 n) {
 // integration. Under sky, studio, beach and soft boxes, suns taken out, it
 // takes the relative RMSE at roughness 0.2 to 1 from 0.06, 0.22, 0.04, 0.08
 // to 0.02, 0.10, 0.02, 0.07; theirs has 0.02, 0.10, 0.02, 0.08, and with the
-// lobe's true mean direction it is no better. With a sun in the map it would
-// be worse than r.
+// lobe's true mean direction it is no better.
 vec3 dominant_direction(vec3 n, vec3 r, float roughness) {
     return mix(r, n, roughness * roughness * roughness);
 }
