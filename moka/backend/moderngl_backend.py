@@ -62,7 +62,8 @@ class ModernGLBackend:
     """Implements :class:`moka.backend.protocol.Backend`.
 
     ``explain`` turns a driver's shader log into one line that names file
-    and line; ``multi_draw`` can be turned off to run as on GL 3.3.
+    and line; ``multi_draw`` and ``clip_control`` can be turned off to run as
+    on a driver of GL 3.3 that has neither.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class ModernGLBackend:
         explain: Callable[[str, ShaderText], str],
         *,
         multi_draw: bool = True,
+        clip_control: bool = True,
     ) -> None:
         self._context = context
         self._ctx = cast(Any, context.gl)
@@ -79,7 +81,9 @@ class ModernGLBackend:
         self._ctx.gc_mode = None
         self._gl = Functions(context.function)
         self._explain = explain
-        self.info = _read_info(context, multi_draw=multi_draw)
+        self.info = _read_info(
+            context, multi_draw=multi_draw, clip_control=clip_control
+        )
         self._state = StateCache(self._gl)
         self._samplers = SamplerCache(self._gl)
         self._blocks = BlockRegistry()
@@ -507,7 +511,9 @@ class ModernGLBackend:
                 raise DeviceError(f"{what}: OpenGL reports {message}")
 
 
-def _read_info(context: GraphicsContext, *, multi_draw: bool) -> BackendInfo:
+def _read_info(
+    context: GraphicsContext, *, multi_draw: bool, clip_control: bool
+) -> BackendInfo:
     ctx = context.gl
     info = ctx.info
     extensions = ctx.extensions
@@ -524,6 +530,7 @@ def _read_info(context: GraphicsContext, *, multi_draw: bool) -> BackendInfo:
         max_uniform_block_size=info["GL_MAX_UNIFORM_BLOCK_SIZE"],
         uniform_alignment=info["GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT"],
         max_texture_units=info["GL_MAX_TEXTURE_IMAGE_UNITS"],
-        clip_control=version >= 450 or "GL_ARB_clip_control" in extensions,
+        clip_control=clip_control
+        and (version >= 450 or "GL_ARB_clip_control" in extensions),
         multi_draw_indirect=multi_draw and base_instance and indirect,
     )
