@@ -41,6 +41,8 @@ FRAME = UniformLayout(
         Parameter("specular_levels", ParameterType.FLOAT),
         Parameter("light_count", ParameterType.INT),
         Parameter("point_size", ParameterType.FLOAT),
+        # With MOKA_LOGARITHMIC_DEPTH: View.depth_range.
+        Parameter("depth_range", ParameterType.VEC3),
         # Of reference lighting: x the first sample of the frame, y how many,
         # z the number of the batch.
         Parameter("sample_range", ParameterType.IVEC4),
@@ -83,7 +85,8 @@ class LightingDescription:
 
     With ``harmonics`` irradiance comes from nine coefficients, not a cube.
     ``light_capacity`` is 0 without punctual lights, else the power of two
-    that holds them. ``ibl`` is how the environment lights.
+    that holds them. ``ibl`` is how the environment lights. What the target
+    wants stands here too: ``float_target``, and ``logarithmic_depth``.
     """
 
     environment: bool
@@ -94,12 +97,15 @@ class LightingDescription:
     float_target: bool
     harmonics: bool = False
     ibl: str = "split-sum"
+    logarithmic_depth: bool = False
 
     def defines(self, features: Feature) -> dict[str, int]:
         """The defines for a material with ``features``."""
         defines: dict[str, int] = {}
         if self.float_target:
             defines["MOKA_FLOAT_TARGET"] = 1
+        if self.logarithmic_depth:
+            defines["MOKA_LOGARITHMIC_DEPTH"] = 1
         if Feature.UNLIT in features:
             return defines
         defines[f"MOKA_BRDF_{_macro(self.brdf)}"] = 1

@@ -39,7 +39,7 @@ from moka.renderer.prepared_scene import (
     SharedBindings,
 )
 from moka.renderer.progressive import Progressive
-from moka.renderer.screen_passes import ScreenPasses
+from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.targets import Targets, make_targets
 from moka.renderer.textures import TexturePool
@@ -129,7 +129,12 @@ class Renderer:
         self._update_maps(scene, materials)
         lights = self._sources.rows(scene, view.position)
         capacity = light_capacity(len(lights)) if materials.has_lit else 0
-        prepared = self._prepare(scene, materials, capacity)
+        prepared = self._prepare(
+            scene,
+            materials,
+            capacity,
+            logarithmic_depth=view.depth_range is not None,
+        )
         targets = self._update_targets()
         visible = np.flatnonzero(scene.visible(camera, width / height))
         if self._accumulates:
@@ -244,7 +249,12 @@ class Renderer:
             self._prepared_key = None
 
     def _prepare(
-        self, scene: Scene, materials: SceneMaterials, capacity: int
+        self,
+        scene: Scene,
+        materials: SceneMaterials,
+        capacity: int,
+        *,
+        logarithmic_depth: bool,
     ) -> PreparedScene:
         settings = self.settings
         maps = self._sources.maps
@@ -260,6 +270,7 @@ class Renderer:
             "split-sum"
             if settings.ibl == "filtered" and maps.radiance is None
             else settings.ibl,
+            logarithmic_depth,
         )
         key = (self._materials_key, lighting)
         if self._prepared is not None and self._prepared_key == key:
@@ -339,10 +350,13 @@ class Renderer:
                 scene.transforms, visible, view, states, PASS_SCENE
             )
         )
-        self._screen.resolve(
-            commands, SortKey(PASS_SCENE, LAYER_RESOLVE), targets
-        )
-        self._draw_behind(scene, view, targets, commands)
+        sky = self._sky(scene, view)
+        if targets.samples > 1:
+            key = SortKey(PASS_SCENE, LAYER_RESOLVE)
+            self._screen.resolve(commands, key, targets, sky)
+        elif sky is not None:
+            key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
+            self._screen.draw_background(commands, key, sky)
         if self._accumulates:
             self._progressive.accumulate(
                 commands, SortKey(PASS_ACCUMULATE), targets
@@ -382,6 +396,7 @@ class Renderer:
                 "specular_levels": self._sources.maps.specular_levels - 1,
                 "light_count": len(lights),
                 "point_size": max(1.0, self.size[1] * _POINT_SIZE),
+                "depth_range": view.depth_range or (0.0, 0.0, 0.0),
                 "sample_range": (
                     self._progressive.sample_range
                     if self._accumulates
@@ -390,23 +405,11 @@ class Renderer:
             }
         )
 
-    def _draw_behind(
-        self,
-        scene: Scene,
-        view: View,
-        targets: Targets,
-        commands: CommandList,
-    ) -> None:
+    def _sky(self, scene: Scene, view: View) -> Sky | None:
         environment_map = self._sources.maps.map
         if scene.background != "environment" or environment_map is None:
-            return
-        layer = (
-            LAYER_RESOLVE + 1 if targets.is_multisampled else LAYER_BACKGROUND
-        )
-        self._screen.draw_background(
-            commands,
-            SortKey(PASS_SCENE, layer, Stage.OPAQUE),
-            targets,
+            return None
+        return Sky(
             environment_map,
             view,
             rotation=scene.environment_rotation,

@@ -10,9 +10,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from moka.core.maths import Array
+from moka.model.cameras import Perspective
 from moka.scene.camera import Camera
 
 __all__ = ["View", "look_through", "turn_matrix"]
+
+# Logarithmic depth ends at this many near distances, and everything beyond
+# is equally far. Float32 then has steps of 3e-6 of the distance at most.
+_DEPTH_RATIO = 2.0**64
+# An infinite far plane as a float32.
+_FARTHEST = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,13 +28,16 @@ class View:
 
     ``position`` is the camera in the world, ``matrix`` world to camera,
     ``projection`` camera to clip space, ``clip_from_world`` the same from
-    world axes with their origin at the camera.
+    world axes with their origin at the camera. ``depth_range`` is for
+    logarithmic depth: near and far distance and 1 / log2(far / near); None
+    where depth is what the projection says.
     """
 
     position: Array
     matrix: Array
     projection: Array
     clip_from_world: Array
+    depth_range: tuple[float, float, float] | None = None
 
     @property
     def is_perspective(self) -> bool:
@@ -79,12 +89,35 @@ class View:
 
 
 def look_through(camera: Camera, aspect: float, *, reversed_z: bool) -> View:
-    """The view of ``camera`` for a picture of ``aspect`` (width by height)."""
+    """The view of ``camera`` for a picture of ``aspect`` (width by height).
+
+    Without ``reversed_z``, which needs clip control, depth in perspective is
+    logarithmic: OpenGL's own has nothing left for what is a few thousand
+    times as far away as the near plane.
+    """
     matrix = camera.view_matrix
+    lens = camera.projection
     projection = camera.projection_matrix(aspect, reversed_z=reversed_z)
+    depth_range = None
+    if isinstance(lens, Perspective) and not reversed_z:
+        # The shader cuts at the far plane: in float32 near / far is lost in
+        # the third row, and with it all that is far would be clipped.
+        projection[2, 2:] = -1.0, -2.0 * lens.near
+        ratio = min(lens.far / lens.near, _DEPTH_RATIO)
+        depth_range = (
+            lens.near,
+            min(lens.far, _FARTHEST),
+            1.0 / math.log2(ratio),
+        )
     rotation = np.eye(4)
     rotation[:3, :3] = matrix[:3, :3]
-    return View(camera.position, matrix, projection, projection @ rotation)
+    return View(
+        camera.position,
+        matrix,
+        projection,
+        projection @ rotation,
+        depth_range,
+    )
 
 
 def turn_matrix(rotation: float) -> Array:
