@@ -12,10 +12,13 @@ __all__ = ["TILE", "Convergence", "Schedule", "rectangles"]
 #: error averages out, small against an object.
 TILE = 32
 
-# A frame this long still lets a window answer; a batch this long has most of
-# what a low-discrepancy sequence gives over random numbers.
+# A frame this long still lets a window answer.
 _FRAME_SAMPLES = 8
-_BATCH_SAMPLES = 32
+# Where an error decides, a batch is as long as the step in which to stop;
+# else as long as leaves enough batches to tell the error. Longer ones have
+# more of what a low-discrepancy sequence gives over random numbers: 1024
+# samples in batches of 64 in place of 32 have 3/4 of the error.
+_STEP_SAMPLES = 32
 _FEWEST_BATCHES = 16
 
 # The spread of fewer batches says too little to stop by.
@@ -31,9 +34,14 @@ class Schedule:
     batches: int
 
     @classmethod
-    def of(cls, total: int) -> "Schedule":
-        """At least ``total`` samples a pixel, in several batches."""
-        batch = min(max(total // _FEWEST_BATCHES, 1), _BATCH_SAMPLES)
+    def of(cls, total: int, *, stops_early: bool = False) -> "Schedule":
+        """At least ``total`` samples a pixel, in several batches.
+
+        ``stops_early`` is for sampling that an error may end sooner.
+        """
+        batch = max(total // _FEWEST_BATCHES, 1)
+        if stops_early:
+            batch = min(batch, _STEP_SAMPLES)
         frames = -(-batch // _FRAME_SAMPLES)
         samples = -(-batch // frames)
         return cls(samples, frames, -(-total // (samples * frames)))

@@ -117,7 +117,9 @@ class Progressive:
         key = (key, samples, max_error)
         if key != self._key:
             self._key = key
-            self._schedule = Schedule.of(samples)
+            self._schedule = Schedule.of(
+                samples, stops_early=max_error is not None
+            )
             tiles = (-(-height // TILE), -(-width // TILE))
             self._convergence = Convergence(tiles, max_error)
             self._frame = 0

@@ -37,7 +37,7 @@ class RenderSettings:
     ``ibl`` is how the environment lights: ``split-sum``; ``filtered``, which
     adds ``ibl_samples`` view-dependent samples; ``reference``, which
     integrates it over several frames until each pixel has
-    ``reference_samples`` samples (by default 512, or 16384 where an error
+    ``reference_samples`` samples (by default 1024, or 16384 where an error
     decides) or, tile by tile, its estimated relative standard error is below
     ``max_error``. There ``samples`` does not matter: every frame sees
     another point of each pixel.
@@ -94,7 +94,7 @@ class RenderSettings:
         """Samples of a pixel after which reference lighting stops."""
         if self.reference_samples is not None:
             return self.reference_samples
-        return 512 if self.max_error is None else 16384
+        return 1024 if self.max_error is None else 16384
 
 
 def _check(what: str, value: str, known: tuple[str, ...]) -> None:

@@ -14,13 +14,13 @@ from moka.renderer.convergence import (
 )
 
 
-@given(st.integers(1, 100_000))
-def test_a_schedule_has_the_samples_and_few_more(total):
-    schedule = Schedule.of(total)
+@given(st.integers(1, 100_000), st.booleans())
+def test_a_schedule_has_the_samples_and_few_more(total, stops_early):
+    schedule = Schedule.of(total, stops_early=stops_early)
     batch = schedule.samples * schedule.frames
     assert 0 <= schedule.batches * batch - total < batch
     assert schedule.samples <= 8
-    assert batch <= 32
+    assert not stops_early or batch <= 32
     assert schedule.total_frames == schedule.frames * schedule.batches
     # Enough batches to tell their spread, where there are samples for it.
     assert schedule.batches >= min(total, 12)
