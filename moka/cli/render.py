@@ -145,7 +145,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reference-samples",
         metavar="N",
         type=_count,
-        help="samples a pixel of --ibl reference (default: 512; with "
+        help="samples a pixel of --ibl reference (default: 1024; with "
         "--max-error 16384 at most)",
     )
     add(
