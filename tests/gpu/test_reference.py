@@ -6,8 +6,9 @@ import pytest
 from moka.commands.command_list import CommandList
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
-from moka.material.material import Material
+from moka.material.material import AlphaMode, Material
 from moka.model.geometry import quad, sphere
+from moka.model.lights import LightKind, PunctualLight
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
 from tests.support.gpu import gpu
@@ -24,7 +25,12 @@ from tests.support.patches import (
     sunny,
     tilted,
 )
-from tests.support.pictures import draw_radiance, scene_of, square_camera
+from tests.support.pictures import (
+    draw_radiance,
+    placed_at,
+    scene_of,
+    square_camera,
+)
 
 pytestmark = pytest.mark.gpu
 
@@ -292,3 +298,74 @@ def sample(
         return radiance.data[::-1], renderer.lighting_statistics
     finally:
         renderer.close()
+
+
+def test_the_environment_turns_and_dims_as_in_split_sum(
+    egl_device: GraphicsDevice,
+) -> None:
+    """By whole texels, so that a rolled map is the same environment."""
+    pixels = sunny(16)
+    rolled = np.roll(pixels, 5, axis=1)
+    turned, moved = (
+        draw_patches(
+            egl_device,
+            Environment(some),
+            NORMALS,
+            MATERIALS[::2],
+            ibl="reference",
+            reference_samples=256,
+            **scene,
+        ).mean(axis=2)
+        for some, scene in (
+            (
+                pixels,
+                {
+                    # u grows as the environment turns clockwise.
+                    "environment_rotation": -5 / 32 * 2 * np.pi,
+                    "environment_intensity": 0.5,
+                },
+            ),
+            (0.5 * rolled, {}),
+        )
+    )
+    assert turned[0] == pytest.approx(moved[0], rel=1e-3)
+    assert turned == pytest.approx(moved, rel=0.02)
+
+
+def test_lights_emission_and_blending_are_unchanged(
+    device: GraphicsDevice,
+) -> None:
+    """Without an environment the modes differ by nothing.
+
+    The first frame looks through the middle of each pixel.
+    """
+    glass = Material(
+        base_colour_factor=(0.2, 0.5, 0.8, 0.5),
+        alpha_mode=AlphaMode.BLEND,
+        emissive_factor=(0.1, 0.2, 0.0),
+        roughness_factor=0.4,
+    )
+    wall = Material(base_colour_factor=(0.8, 0.8, 0.8, 1.0), metallic_factor=0)
+    lamp = PunctualLight(LightKind.POINT, (1.0, 0.9, 0.8), 20.0)
+    scene = scene_of(
+        [
+            (quad(3.0), wall, placed_at(z=-1)),
+            (quad(3.0), glass, np.eye(4)),
+        ],
+        None,
+        "transparent",
+        lights=[(lamp, placed_at(0.3, 0.2, 2.0))],
+    )
+    reference, split_sum = (
+        draw_radiance(
+            device,
+            scene,
+            square_camera(),
+            (16, 16),
+            ibl=ibl,
+            reference_samples=1,
+        )
+        for ibl in ("reference", "split-sum")
+    )
+    assert reference.max() > 0.1
+    assert reference == pytest.approx(split_sum, rel=1e-6)

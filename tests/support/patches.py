@@ -54,6 +54,9 @@ def draw_patches(
     environment: Environment,
     normals: Array,
     materials: Sequence[oracle.Material],
+    *,
+    environment_rotation: float = 0.0,
+    environment_intensity: float = 1.0,
     **settings: object,
 ) -> NDArray[np.float32]:
     """Radiance (materials, normals, pixels, 3), seen from +Z.
@@ -74,6 +77,8 @@ def draw_patches(
         ]
     scene = Scene()
     scene.environment = environment
+    scene.environment_rotation = environment_rotation
+    scene.environment_intensity = environment_intensity
     scene.background = "transparent"
     scene.add(model_of(items))
     camera = Camera(Orthographic(columns / 2, rows / 2, 0.01, 10.0))
