@@ -32,7 +32,7 @@ SCRATCH_UNIT = 47
 
 
 class GlTexture:
-    """A GL texture, or the renderbuffer that a multisampled one is."""
+    """A GL texture: 2D, a cube map, or 2D of several samples."""
 
     def __init__(
         self,
@@ -42,25 +42,25 @@ class GlTexture:
     ) -> None:
         self._gl = gl
         self.descriptor = descriptor
-        self.is_renderbuffer = descriptor.samples > 1
         self.target = (
             c.TEXTURE_CUBE_MAP
             if descriptor.kind is TextureKind.CUBE
+            else c.TEXTURE_2D_MULTISAMPLE
+            if descriptor.samples > 1
             else c.TEXTURE_2D
         )
-        if self.is_renderbuffer:
-            self.name = gl.make("Renderbuffers")
-            gl.BindRenderbuffer(c.RENDERBUFFER, self.name)
-            gl.RenderbufferStorageMultisample(
-                c.RENDERBUFFER,
+        self.name = gl.make("Textures")
+        self._bind()
+        if descriptor.samples > 1:
+            gl.TexImage2DMultisample(
+                self.target,
                 descriptor.samples,
                 c.pixel_format(descriptor.format)[0],
                 descriptor.width,
                 descriptor.height,
+                True,
             )
             return
-        self.name = gl.make("Textures")
-        self._bind()
         gl.TexParameteri(self.target, c.TEXTURE_BASE_LEVEL, 0)
         gl.TexParameteri(
             self.target, c.TEXTURE_MAX_LEVEL, descriptor.level_count - 1
@@ -78,9 +78,9 @@ class GlTexture:
 
     def read(self, level: int, face: int) -> NDArray[Any]:
         """The texels of one level: (height, width, channels)."""
-        if self.is_renderbuffer:
-            raise DeviceError("a multisampled texture cannot be read")
         descriptor = self.descriptor
+        if descriptor.samples > 1:
+            raise DeviceError("a multisampled texture cannot be read")
         width, height = descriptor.level_size(level)
         texels = np.empty(
             (height, width, descriptor.format.channels),
@@ -95,8 +95,7 @@ class GlTexture:
 
     def release(self) -> None:
         """Delete the GL object."""
-        kind = "Renderbuffers" if self.is_renderbuffer else "Textures"
-        self._gl.delete(kind, self.name)
+        self._gl.delete("Textures", self.name)
 
     def _bind(self) -> None:
         self._gl.ActiveTexture(c.TEXTURE0 + SCRATCH_UNIT)
@@ -236,17 +235,12 @@ class GlFramebuffer:
         self._gl.delete("Framebuffers", self.name)
 
     def _attach(self, point: int, item: _Attached) -> None:
-        texture, gl = item.texture, self._gl
-        if texture.is_renderbuffer:
-            gl.FramebufferRenderbuffer(
-                c.FRAMEBUFFER, point, c.RENDERBUFFER, texture.name
-            )
-            return
+        texture = item.texture
         target = (
             c.TEXTURE_CUBE_MAP_POSITIVE_X + item.attachment.face
             if texture.target == c.TEXTURE_CUBE_MAP
-            else c.TEXTURE_2D
+            else texture.target
         )
-        gl.FramebufferTexture2D(
+        self._gl.FramebufferTexture2D(
             c.FRAMEBUFFER, point, target, texture.name, item.attachment.level
         )

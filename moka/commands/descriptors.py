@@ -119,7 +119,8 @@ class TextureKind(Enum):
 class TextureDescriptor:
     """A texture of ``levels`` mip levels (0 means the whole chain).
 
-    With ``samples`` > 1 it can only be a framebuffer attachment.
+    With ``samples`` > 1 it has one level and is only written by draws;
+    shaders read it as ``sampler2DMS``.
     """
 
     format: PixelFormat
@@ -297,13 +298,9 @@ class CompareFunction(Enum):
 
 
 class BlendState(Enum):
-    """How a fragment is combined with what is there; alpha is coverage.
-
-    PREMULTIPLIED puts it over, UNDER behind what is there.
-    """
+    """How a fragment is combined with what is there; alpha is coverage."""
 
     PREMULTIPLIED = "premultiplied"
-    UNDER = "under"
     ALPHA = "alpha"
     ADDITIVE = "additive"
 

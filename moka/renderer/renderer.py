@@ -27,6 +27,7 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.graphics.program_cache import ProgramCache
+from moka.lighting.disk_cache import DiskCache
 from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.light_sources import LightSources, light_capacity
@@ -65,6 +66,8 @@ class Renderer:
     is made; both may be replaced between frames. With ``to_window`` the
     display pass ends in the device's window, else in a texture that
     :meth:`read_display` reads. ``statistics`` collects times and counters.
+    ``cache`` is where preintegrated lighting is looked for, and written to
+    by :meth:`keep_lighting`.
     """
 
     def __init__(
@@ -75,6 +78,7 @@ class Renderer:
         *,
         to_window: bool = False,
         statistics: Statistics | None = None,
+        cache: DiskCache | None = None,
     ) -> None:
         self.device = device
         self.size = size
@@ -84,7 +88,7 @@ class Renderer:
         passes = FullscreenPasses(device)
         self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)
-        self._sources = LightSources(device, passes, self.statistics)
+        self._sources = LightSources(device, passes, self.statistics, cache)
         self._programs = ProgramCache(device)
         self._geometry = GeometryPool(device)
         self._textures = TexturePool(device, self.statistics)
@@ -104,6 +108,18 @@ class Renderer:
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
         self._textures.close()
+
+    @property
+    def has_lighting_to_keep(self) -> bool:
+        """Whether :meth:`keep_lighting` would write anything."""
+        return self._sources.has_something_to_keep
+
+    def keep_lighting(self) -> None:
+        """Write preintegrated lighting that is new to the cache, if any.
+
+        Waits for the GPU and the disk: call it when nobody else waits.
+        """
+        self._sources.keep()
 
     def begin(self, scene: Scene) -> None:
         """Start to decode what ``scene`` samples, without waiting for it.

@@ -5,7 +5,6 @@ import numpy as np
 from moka.commands.command_list import CommandList
 from moka.commands.descriptors import (
     BindGroupDescriptor,
-    BlendState,
     BufferDescriptor,
     BufferUsage,
     CompareFunction,
@@ -27,7 +26,7 @@ from moka.lighting.preintegration import CUBE_SAMPLER, MAP_SAMPLER
 from moka.renderer.targets import Targets
 from moka.renderer.view import View
 
-__all__ = ["ScreenPasses"]
+__all__ = ["ScreenPasses", "Sky"]
 
 _BACKGROUND = UniformLayout(
     "Background",
@@ -45,6 +44,34 @@ _TONE_MAP = UniformLayout(
 )
 
 
+class Sky:
+    """What is seen of an environment by one camera.
+
+    ``rotation`` is in radians about +Y; a ``float_target`` can hold any
+    radiance, others what half floats can.
+    """
+
+    def __init__(
+        self,
+        environment_map: Handle,
+        view: View,
+        *,
+        rotation: float,
+        intensity: float,
+        float_target: bool,
+    ) -> None:
+        self.binding = TextureBinding(
+            "environment_map", environment_map, MAP_SAMPLER
+        )
+        self.defines = {"MOKA_FLOAT_TARGET": 1} if float_target else {}
+        self.block = _BACKGROUND.pack(
+            {
+                "direction_from_clip": view.direction_from_clip(rotation),
+                "parameters": (intensity, 0.0, 0.0, 0.0),
+            }
+        )
+
+
 class ScreenPasses:
     """Draws the environment behind the scene, and the display from it."""
 
@@ -55,6 +82,7 @@ class ScreenPasses:
         self._passes = passes
         self._groups: dict[BindGroupDescriptor, Handle] = {}
         self._background = self._buffer(_BACKGROUND)
+        self._sky_block = UniformBinding("Background", self._background)
         self._tone_map = self._buffer(_TONE_MAP)
 
     def forget(self) -> None:
@@ -63,73 +91,57 @@ class ScreenPasses:
         self._groups.clear()
 
     def draw_background(
-        self,
-        commands: CommandList,
-        key: SortKey,
-        targets: Targets,
-        environment_map: Handle,
-        view: View,
-        *,
-        rotation: float,
-        intensity: float,
-        float_target: bool,
+        self, commands: CommandList, key: SortKey, sky: Sky
     ) -> None:
-        """Draw the map wherever nothing is nearer.
-
-        ``rotation`` is the environment's, in radians about +Y. With
-        multisampling this comes after the resolve, under what is there: the
-        sky has no edges, and one sample a pixel costs half of a whole frame
-        less than four. (Coverage composites in any order; Porter and Duff
-        1984.)
-        """
+        """Draw the sky wherever nothing is nearer."""
         is_reversed = self._device.info.clip_control
-        defines: dict[str, str | int] = {
-            "MOKA_FAR_DEPTH": "0.0" if is_reversed else "1.0"
-        }
-        if float_target:
-            defines["MOKA_FLOAT_TARGET"] = 1
-        values = _BACKGROUND.pack(
-            {
-                "direction_from_clip": view.direction_from_clip(rotation),
-                "parameters": (intensity, 0.0, 0.0, 0.0),
-            }
+        state = RasterState(
+            cull=CullMode.NONE,
+            depth_test=(
+                CompareFunction.GREATER_EQUAL
+                if is_reversed
+                else CompareFunction.LESS_EQUAL
+            ),
+            depth_write=False,
         )
-        group = BindGroupDescriptor(
-            (TextureBinding("environment_map", environment_map, MAP_SAMPLER),),
-            (UniformBinding("Background", self._background),),
-        )
-        nearer = (
-            CompareFunction.GREATER_EQUAL
-            if is_reversed
-            else CompareFunction.LESS_EQUAL
-        )
+        far = {"MOKA_FAR_DEPTH": "0.0" if is_reversed else "1.0"}
         buffer = commands.command_buffer(key)
-        if targets.is_multisampled:
-            state = RasterState(
-                cull=CullMode.NONE,
-                depth_test=None,
-                depth_write=False,
-                blend=BlendState.UNDER,
-            )
-            buffer.bind_framebuffer(targets.resolved)
-        else:
-            state = RasterState(
-                cull=CullMode.NONE, depth_test=nearer, depth_write=False
-            )
-        buffer.fill_buffer(self._background, values)
+        buffer.fill_buffer(self._background, sky.block)
         buffer.draw(
-            self._passes.program("background.frag", defines),
+            self._passes.program("background.frag", {**sky.defines, **far}),
             self._passes.triangle,
-            self._group(group),
+            self._group(
+                BindGroupDescriptor((sky.binding,), (self._sky_block,))
+            ),
             state,
         )
 
     def resolve(
-        self, commands: CommandList, key: SortKey, targets: Targets
+        self,
+        commands: CommandList,
+        key: SortKey,
+        targets: Targets,
+        sky: Sky | None,
     ) -> None:
-        """Average the samples of the scene, if it has several."""
-        if targets.is_multisampled:
-            commands.resolve(targets.scene, targets.resolved, key=key)
+        """Average the samples of the scene, with the sky behind it."""
+        defines: dict[str, str | int] = {"MOKA_SAMPLES": targets.samples}
+        textures = [
+            TextureBinding("scene_map", targets.scene_texture, CUBE_SAMPLER)
+        ]
+        buffer = commands.command_buffer(key)
+        if sky is not None:
+            defines |= {**sky.defines, "MOKA_SKY": 1}
+            textures.append(sky.binding)
+            buffer.fill_buffer(self._background, sky.block)
+        buffer.bind_framebuffer(targets.resolved)
+        buffer.draw(
+            self._passes.program("resolve.frag", defines),
+            self._passes.triangle,
+            self._group(
+                BindGroupDescriptor(tuple(textures), (self._sky_block,))
+            ),
+            FULLSCREEN,
+        )
 
     def draw_display(
         self,

@@ -28,15 +28,16 @@ class Targets:
 
     made_for: tuple[tuple[int, int], int, bool]
     scene: Handle
+    scene_texture: Handle
     resolved: Handle
     resolved_texture: Handle
     display: Handle
     resources: tuple[Handle, ...]
 
     @property
-    def is_multisampled(self) -> bool:
-        """Whether there is something to resolve."""
-        return self.scene != self.resolved
+    def samples(self) -> int:
+        """Samples of a pixel in ``scene``; more than 1 must be resolved."""
+        return self.made_for[1]
 
     def destroy(self, device: GraphicsDevice) -> None:
         """Destroy all of it."""
@@ -79,8 +80,10 @@ def make_targets(
 
     resolved_texture = texture(colour_format)
     depth = texture(PixelFormat.DEPTH32F, samples)
+    scene_texture = resolved_texture
     if samples > 1:
-        scene = framebuffer(texture(colour_format, samples), depth)
+        scene_texture = texture(colour_format, samples)
+        scene = framebuffer(scene_texture, depth)
         resolved = framebuffer(resolved_texture)
     else:
         scene = resolved = framebuffer(resolved_texture, depth)
@@ -88,6 +91,7 @@ def make_targets(
     return Targets(
         (size, samples, float_output),
         scene,
+        scene_texture,
         resolved,
         resolved_texture,
         display,
