@@ -234,3 +234,41 @@ def test_a_sun_without_a_size_is_a_point(egl_device: GraphicsDevice) -> None:
     assert shaded == pytest.approx(0.5, rel=1e-3)
     at_sun = probe.shade(*mirrored(TOWARDS_SUN[None], 0.3), 0.0)
     assert at_sun.min() > 1e3
+
+
+def _extreme_maps() -> dict[str, NDArray[np.float32]]:
+    one = np.zeros((16, 32, 3), np.float32)
+    one[4, 7] = 1e9
+    pole = np.full((64, 128, 3), 0.1, np.float32)
+    pole[0] = 1e7
+    many = np.full((64, 128, 3), 0.1, np.float32)
+    many[::8, ::8] = 1e6
+    return {
+        "black": np.zeros((64, 128, 3), np.float32),
+        "two texels": np.array([[[0, 1, 2], [1e6, 0, 0]]], np.float32),
+        "one texel shines": one,
+        "the pole shines": pole,
+        "128 suns": many,
+        "huge": np.full((8, 16, 3), 1e30, np.float32),
+        "tiny": np.full((8, 16, 3), 1e-30, np.float32),
+    }
+
+
+@pytest.mark.parametrize("name", _extreme_maps())
+@pytest.mark.parametrize("suns", ["auto", "off"])
+def test_light_is_finite_and_never_negative(
+    egl_device: GraphicsDevice, name: str, suns: str
+) -> None:
+    environment = Environment(_extreme_maps()[name], name=name)
+    probe = LightingProbe(egl_device, environment, suns=suns, multiscatter=True)
+    normals, views = sphere_points(64)
+    # Grazing views, and one from behind.
+    grazing = np.array([0.0, 1.0, 0.0]) + views * [[1e-6]] * 64
+    normals = np.concatenate((normals, grazing, -views[:1]))
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    views = np.tile(views[0], (len(normals), 1))
+    for metalness in (0.0, 1.0):
+        for roughness in (0.0, 1e-4, 1e-3, 0.05, 0.3, 1.0):
+            light = probe.shade(normals, views, roughness, metalness=metalness)
+            assert np.isfinite(light).all()
+            assert (light >= 0.0).all()
