@@ -1,5 +1,6 @@
 """Fixtures that every test can ask for."""
 
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,18 @@ from hypothesis import settings
 settings.register_profile("moka", deadline=None, derandomize=True)
 settings.load_profile("moka")
 
+_numbers = count()
+
 ASSETS = Path(__file__).resolve().parents[2] / "shared" / "assets"
+
+
+@pytest.fixture(autouse=True)
+def cache_of_its_own(
+    tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Keep every test, and what it starts, away from the user's cache."""
+    folder = tmp_path_factory.getbasetemp() / f"cache-{next(_numbers)}"
+    monkeypatch.setenv("MOKA_CACHE_DIR", str(folder))
 
 
 @pytest.fixture(scope="session")

@@ -4,6 +4,7 @@ Reading the environment and decoding images run in worker threads while the
 render thread makes the context and compiles; they meet at the first frame.
 """
 
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ from moka.core.statistics import Statistics
 from moka.renderer.settings import RenderSettings
 
 if TYPE_CHECKING:
+    from moka.commands.commands import Readback
     from moka.graphics.device import GraphicsDevice
     from moka.lighting.environment import Environment
     from moka.model.model import Model
@@ -72,6 +74,7 @@ def render(
     reference_samples: int | None = None,
     max_error: float | None = None,
     backend: str = "auto",
+    cache: bool = True,
 ) -> Image:
     """Render one picture headless.
 
@@ -96,7 +99,9 @@ def render(
     the error of the former. ``ibl`` is how the environment lights:
     ``split-sum``; ``filtered``, with ``ibl_samples`` view-dependent samples
     a pixel; ``reference``, which integrates it until ``reference_samples``
-    or an estimated relative standard error of ``max_error``.
+    or an estimated relative standard error of ``max_error``. With ``cache``
+    lighting that was preintegrated before is read from disk, and new one is
+    written there; the picture is the same.
 
     Returns an :class:`moka.Image` of linear Rec.709 radiance, float32
     (height, width, 4), top row first.
@@ -134,6 +139,7 @@ def render(
         Statistics(),
         want_pixels=True,
         want_display=True,
+        cache=cache,
     )
 
 
@@ -144,11 +150,15 @@ def render_request(
     want_pixels: bool,
     want_display: bool,
     debug: bool = False,
+    cache: bool = False,
+    deliver: Callable[[Image], None] | None = None,
 ) -> Image:
     """Make the picture of ``request``; see :func:`render` for its errors.
 
     Only what is wanted is read back: linear ``pixels``, the tone mapped
-    ``display`` bytes, or both.
+    ``display`` bytes, or both. ``deliver`` gets the picture as soon as it is
+    there; what else is to be done, such as to fill the ``cache``, is done
+    afterwards.
     """
     _check_size(request.size)
     # In this order: the context is made and the map is read by other
@@ -162,10 +172,12 @@ def render_request(
         return _render_with(
             device,
             request,
-            reader.submit(_load_environment, request, statistics),
+            reader.submit(_load_environment, request, statistics, cache=cache),
             statistics,
             want_pixels=want_pixels,
             want_display=want_display,
+            cache=cache,
+            deliver=deliver,
         )
 
 
@@ -177,8 +189,11 @@ def _render_with(
     *,
     want_pixels: bool,
     want_display: bool,
+    cache: bool,
+    deliver: Callable[[Image], None] | None,
 ) -> Image:
     from moka.commands.command_list import CommandList
+    from moka.lighting.disk_cache import DiskCache
     from moka.renderer.renderer import Renderer
     from moka.scene.scene import Scene
 
@@ -190,7 +205,11 @@ def _render_with(
         scene.add(_load_model(request.source))
         camera = _choose_camera(request, scene)
     renderer = Renderer(
-        device, request.size, request.settings, statistics=statistics
+        device,
+        request.size,
+        request.settings,
+        statistics=statistics,
+        cache=DiskCache() if cache else None,
     )
     try:
         renderer.begin(scene)
@@ -210,21 +229,36 @@ def _render_with(
         for stage, seconds in device.stage_seconds().items():
             statistics.add_time(stage, seconds)
         statistics.lighting.update(renderer.lighting_statistics)
+        statistics.gl.update(
+            backend=info.kind,
+            vendor=info.vendor,
+            renderer=info.renderer,
+            version=info.version,
+        )
+        for counters in work:
+            for name in counters.__slots__:
+                statistics.count(name, getattr(counters, name))
+        image = _image(request, radiance, display)
+        if deliver is not None:
+            deliver(image)
+        if renderer.has_lighting_to_keep:
+            with statistics.stage("store"):
+                renderer.keep_lighting()
+        return image
     finally:
         renderer.close()
-    statistics.gl.update(
-        backend=info.kind,
-        vendor=info.vendor,
-        renderer=info.renderer,
-        version=info.version,
-    )
-    for counters in work:
-        for name in counters.__slots__:
-            statistics.count(name, getattr(counters, name))
+
+
+def _image(
+    request: RenderRequest,
+    radiance: "Readback | None",
+    display: "Readback | None",
+) -> Image:
+    """What was read back, top row first."""
     pixels = None
     if radiance is not None:
         assert radiance.data is not None
-        pixels = _over_background(radiance.data[::-1], scene.background)
+        pixels = _over_background(radiance.data[::-1], request.background)
     shown = None
     if display is not None:
         assert display.data is not None
@@ -252,7 +286,7 @@ def _load_model(source: Any) -> "Model":
 
 
 def _load_environment(
-    request: RenderRequest, statistics: Statistics
+    request: RenderRequest, statistics: Statistics, *, cache: bool
 ) -> "Environment | None":
     from moka.lighting.environment import Environment, load_environment
 
@@ -260,7 +294,11 @@ def _load_environment(
     if source is None or isinstance(source, Environment):
         return source
     with statistics.stage("decode"):
-        return load_environment(source)
+        environment = load_environment(source)
+        if cache and environment is not None:
+            # By which the cache finds it; here nobody waits for it.
+            _ = environment.digest
+        return environment
 
 
 def _choose_camera(request: RenderRequest, scene: "Scene") -> "Camera":

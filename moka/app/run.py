@@ -10,6 +10,7 @@ from moka.app.events import ResizeEvent
 from moka.commands.command_list import CommandList
 from moka.core.errors import OptionError
 from moka.graphics.device import GraphicsDevice
+from moka.lighting.disk_cache import DiskCache
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
 
@@ -34,6 +35,7 @@ def run(
     backend: str = "auto",
     vsync: bool = True,
     debug: bool = False,
+    cache: bool = True,
 ) -> App:
     """Run ``app`` until it quits, its window closes or ``frames`` are done.
 
@@ -42,7 +44,9 @@ def run(
     needs no display and runs one frame unless ``frames`` says otherwise;
     its time advances by 1/60 s a frame and its last frame is left in
     ``app.image``. ``settings`` are a :class:`RenderSettings`, ``backend``
-    is that of ``moka render``, ``debug`` turns GL errors into exceptions.
+    is that of ``moka render``, ``debug`` turns GL errors into exceptions,
+    ``cache`` says whether preintegrated lighting is read from disk and,
+    at the end, written there.
 
     Returns the app. Whatever a callback raises ends the loop, closes window
     and device, and is raised here with its own traceback. Raises
@@ -51,13 +55,21 @@ def run(
     if frames is not None and frames < 1:
         raise OptionError(f"run: {frames} frames are not at least 1")
     running = app() if isinstance(app, type) else app
+    files = DiskCache() if cache else None
     if headless:
         _run_headless(
-            running, frames or 1, size, settings, backend, debug=debug
+            running, frames or 1, size, settings, backend, files, debug=debug
         )
     else:
         _run_in_window(
-            running, frames, size, title, settings, vsync=vsync, debug=debug
+            running,
+            frames,
+            size,
+            title,
+            settings,
+            files,
+            vsync=vsync,
+            debug=debug,
         )
     return running
 
@@ -68,6 +80,7 @@ def _run_headless(
     size: tuple[int, int],
     settings: RenderSettings | None,
     backend: str,
+    cache: DiskCache | None,
     *,
     debug: bool,
 ) -> None:
@@ -76,7 +89,7 @@ def _run_headless(
     settings = settings or RenderSettings(float_output=True)
     with (
         GraphicsDevice.open(backend, debug=debug) as device,
-        _opened(app, device, Renderer(device, size, settings)),
+        _opened(app, device, Renderer(device, size, settings, cache=cache)),
     ):
         for number in range(frames):
             moment = GameTime(
@@ -112,6 +125,7 @@ def _run_in_window(
     size: tuple[int, int],
     title: str,
     settings: RenderSettings | None,
+    cache: DiskCache | None,
     *,
     vsync: bool,
     debug: bool,
@@ -130,7 +144,7 @@ def _run_in_window(
             _opened(
                 app,
                 device,
-                Renderer(device, pixels, settings, to_window=True),
+                Renderer(device, pixels, settings, to_window=True, cache=cache),
             ),
         ):
             started = before = time.perf_counter()
@@ -170,6 +184,7 @@ def _opened(
             width, height = renderer.size
             app.camera.frame(app.scene.bounds(), width / height)
         yield
+        renderer.keep_lighting()
     finally:
         try:
             app.close()

@@ -166,6 +166,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="write stage times and counters",
     )
     add(
+        "--no-cache",
+        action="store_true",
+        help="neither read nor write the disk cache of preintegrated "
+        "lighting, see moka cache",
+    )
+    add(
         "--backend",
         choices=("auto", "egl", "osmesa", "window"),
         default="auto",
@@ -180,20 +186,26 @@ def execute(arguments: argparse.Namespace) -> int:
     request = _request(arguments, outputs)
 
     from moka.app.render import render_request
+    from moka.core.image import Image
     from moka.core.statistics import Statistics, write_statistics
 
     statistics = Statistics(arguments.started)
     statistics.add_time("import", time.perf_counter() - arguments.started)
     suffixes = {path.suffix.lower() for path in outputs}
-    image = render_request(
+
+    def save(image: Image) -> None:
+        with statistics.stage("encode"):
+            image.save_all(outputs, half=arguments.half)
+
+    render_request(
         request,
         statistics,
         want_pixels=".exr" in suffixes,
         want_display=".png" in suffixes,
         debug=arguments.debug,
+        cache=not arguments.no_cache,
+        deliver=save,
     )
-    with statistics.stage("encode"):
-        image.save_all(outputs, half=arguments.half)
     if arguments.stats:
         write_statistics(statistics, arguments.stats)
     return 0

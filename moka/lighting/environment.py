@@ -6,11 +6,12 @@ from which every approximation that follows would suffer; as a light it is
 exact.
 """
 
+import hashlib
 import logging
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +64,7 @@ class Environment:
     pixels: NDArray[np.float32]
     suns: tuple[Sun, ...] = ()
     name: str = "environment"
+    _digest: bytes = field(default=b"", init=False, repr=False)
 
     def __post_init__(self) -> None:
         pixels = np.asarray(self.pixels)
@@ -89,6 +91,19 @@ class Environment:
     ) -> "Environment":
         """The same linear Rec.709 ``radiance`` from everywhere."""
         return cls(np.array([[radiance]], np.float32), name=name)
+
+    @property
+    def digest(self) -> bytes:
+        """SHA-256 of all the light it sends; computed when first asked for.
+
+        Processors have instructions for it, with which it reads 2 GB/s.
+        """
+        if not self._digest:
+            parts = repr((self.pixels.shape, self.suns))
+            state = hashlib.sha256(parts.encode())
+            state.update(self.pixels.data.cast("B"))
+            object.__setattr__(self, "_digest", state.digest())
+        return self._digest
 
     @property
     def is_uniform(self) -> bool:

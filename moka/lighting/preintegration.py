@@ -71,6 +71,7 @@ TABLE_SAMPLER = CUBE_SAMPLER
 
 # Within 0.0028 of float64 quadrature at every texel.
 TABLE_SIZE = 128
+TABLE_FORMAT = PixelFormat.RG32F
 TABLE_SAMPLES = 512
 # Samples for the first rough level; each level below has a quarter of the
 # texels, a wider lobe, and twice as many. Without suns in the map more than
@@ -118,6 +119,7 @@ class EnvironmentMaps:
     specular_levels: int = 1
     irradiance: Handle | None = None
     radiance: Handle | None = None
+    radiance_levels: int = 1
     importance: Handle | None = None
     resources: list[Handle] = field(default_factory=list)
 
@@ -164,31 +166,35 @@ class Preintegrator:
     ) -> None:
         self._device = device
         self._passes = passes
-        self._tables: dict[str, Handle] = {}
 
     def brdf_table(self, brdf: str) -> Handle:
-        """The table of ``gltf``, ``karis`` or ``blinn-phong``, made once.
+        """Make the table of ``gltf``, ``karis`` or ``blinn-phong``.
 
         x is n.v, y is roughness, red the scale of f0, green that of f90.
         """
-        if brdf not in self._tables:
-            table = self._device.create_texture(
-                TextureDescriptor(
-                    PixelFormat.RG32F, TABLE_SIZE, TABLE_SIZE, label="table"
-                )
+        table = self._device.create_texture(
+            TextureDescriptor(
+                TABLE_FORMAT, TABLE_SIZE, TABLE_SIZE, label="table"
             )
-            jobs = _Jobs(self._device, self._passes)
-            jobs.draw(
-                "brdf_table.frag",
-                {
-                    f"MOKA_BRDF_{brdf.upper().replace('-', '_')}": 1,
-                    "MOKA_SAMPLE_COUNT": TABLE_SAMPLES,
-                },
-                Attachment(table),
-            )
-            jobs.run()
-            self._tables[brdf] = table
-        return self._tables[brdf]
+        )
+        jobs = _Jobs(self._device, self._passes)
+        jobs.draw(
+            "brdf_table.frag",
+            {
+                f"MOKA_BRDF_{brdf.upper().replace('-', '_')}": 1,
+                "MOKA_SAMPLE_COUNT": TABLE_SAMPLES,
+            },
+            Attachment(table),
+        )
+        jobs.run()
+        return table
+
+    def add_map(
+        self, maps: EnvironmentMaps, pixels: NDArray[np.float32]
+    ) -> None:
+        """Upload ``pixels`` as the ``map`` of ``maps``."""
+        maps.map = self._upload_map(pixels)
+        maps.resources.append(maps.map)
 
     def prepare(
         self,
@@ -209,8 +215,7 @@ class Preintegrator:
         pixels = environment.full
         is_uniform = pixels.shape[:2] == (1, 1)
         if background or ((specular or irradiance) and not is_uniform):
-            maps.map = self._upload_map(pixels)
-            maps.resources.append(maps.map)
+            self.add_map(maps, pixels)
         if is_uniform:
             # Every direction is alike: one texel a face says it all.
             if specular or irradiance:
@@ -243,6 +248,7 @@ class Preintegrator:
             maps.irradiance = self._convolve(jobs, source, size, maps)
         if radiance:
             maps.radiance = jobs.kept(source)
+            maps.radiance_levels = size.bit_length()
             maps.resources.append(source)
         jobs.run()
         return maps

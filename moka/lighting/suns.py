@@ -19,7 +19,13 @@ from moka.lighting.equirectangular import (
     uv_to_direction,
 )
 
-__all__ = ["AUTO_SUNS", "SplitEnvironment", "extract_suns", "split_environment"]
+__all__ = [
+    "AUTO_SUNS",
+    "SplitEnvironment",
+    "extract_suns",
+    "full_map",
+    "split_environment",
+]
 
 Pixels = NDArray[np.float32]
 Array = NDArray[np.float64]
@@ -66,16 +72,34 @@ def split_environment(
     Its own suns come first. Those that are too many are drawn into the map.
     One texel for all directions becomes a map if there are suns to be shown.
     """
-    own = sorted(environment.suns, key=lambda sun: -sum(sun.irradiance))
-    pixels = environment.pixels
-    if environment.is_uniform:
-        if not own:
-            return SplitEnvironment(pixels, pixels, ())
-        pixels = np.tile(pixels, (_ROWS_OF_UNIFORM, 2 * _ROWS_OF_UNIFORM, 1))
-    whole = _with_suns(pixels, own[most:])
+    own = _own_suns(environment)
+    whole = _with_suns(_map_of(environment), own[most:])
+    if environment.is_uniform and not own:
+        return SplitEnvironment(whole, whole, ())
     base, found = extract_suns(whole, max(most - len(own), 0))
     full = _with_suns(whole, own[:most])
     return SplitEnvironment(full, base, (*own[:most], *found))
+
+
+def full_map(environment: Environment, most: int = AUTO_SUNS) -> Pixels:
+    """The ``full`` of :func:`split_environment`, to the last bit."""
+    own = _own_suns(environment)
+    # In two steps, as there: sums of floats depend on their order.
+    whole = _with_suns(_map_of(environment), own[most:])
+    return _with_suns(whole, own[:most])
+
+
+def _own_suns(environment: Environment) -> list[Sun]:
+    """The brightest first."""
+    return sorted(environment.suns, key=lambda sun: -sum(sun.irradiance))
+
+
+def _map_of(environment: Environment) -> Pixels:
+    """The pixels; a map also of a uniform environment that has suns."""
+    pixels = environment.pixels
+    if environment.is_uniform and environment.suns:
+        return np.tile(pixels, (_ROWS_OF_UNIFORM, 2 * _ROWS_OF_UNIFORM, 1))
+    return pixels
 
 
 def extract_suns(

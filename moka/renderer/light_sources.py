@@ -16,14 +16,16 @@ from moka.core.errors import OptionError
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
+from moka.lighting.disk_cache import DiskCache
 from moka.lighting.environment import Environment, Sun
-from moka.lighting.importance import importance_table
-from moka.lighting.preintegration import EnvironmentMaps, Preintegrator
-from moka.lighting.spherical_harmonics import (
-    irradiance_error,
-    irradiance_harmonics,
+from moka.lighting.environment_lighting import (
+    EnvironmentLighting,
+    LightingRequest,
 )
-from moka.lighting.suns import AUTO_SUNS, SplitEnvironment, split_environment
+from moka.lighting.importance import importance_table
+from moka.lighting.lighting_maker import LightingMaker
+from moka.lighting.preintegration import EnvironmentMaps
+from moka.lighting.suns import AUTO_SUNS, full_map
 from moka.renderer.permutation import lights_layout
 from moka.renderer.view import turn_matrix
 from moka.scene.lights import LIGHT
@@ -35,14 +37,6 @@ __all__ = ["LightSources", "light_capacity"]
 MOST_LIGHTS = 256
 _SMALLEST_CAPACITY = 4
 
-# Errors of nine coefficients, relative to the mean irradiance, between which
-# ``auto`` makes a cube. Below they suffice: largest errors of coefficients
-# and of a cube are 3.1 and 1.2 % for a beach, 3.7 and 3.4 % for soft boxes,
-# 2.2 and 0.6 % for the sky, but 5.4 and 1.6 % for the studio. Above a sun is
-# in the map; of that they make 20 %, and the samples of a cube 70 to 100 %.
-_HARMONICS_SUFFICE = 0.04
-_HARMONICS_SEE_A_SUN = 0.12
-
 
 class LightSources:
     """Environment maps and the buffer of lights, made as they are needed."""
@@ -52,9 +46,10 @@ class LightSources:
         device: GraphicsDevice,
         passes: FullscreenPasses,
         statistics: Statistics,
+        cache: DiskCache | None = None,
     ) -> None:
         self._device = device
-        self._preintegrator = Preintegrator(device, passes)
+        self._maker = LightingMaker(device, passes, cache)
         self._statistics = statistics
         self.maps = EnvironmentMaps()
         self.harmonics: NDArray[np.float64] | None = None
@@ -66,7 +61,16 @@ class LightSources:
 
     def table(self, brdf: str) -> Handle:
         """The BRDF table; see Preintegrator.brdf_table."""
-        return self._preintegrator.brdf_table(brdf)
+        return self._maker.table(brdf)
+
+    @property
+    def has_something_to_keep(self) -> bool:
+        """Whether :meth:`keep` would write anything."""
+        return self._maker.has_something_to_keep
+
+    def keep(self) -> None:
+        """Write what is new to the disk cache; see LightingMaker.keep."""
+        self._maker.keep()
 
     def update_maps(
         self,
@@ -102,31 +106,33 @@ class LightSources:
             for made, want in zip(self._made, wanted, strict=True)
         ):
             return False
+        self._maker.keep()
         self.maps.destroy(self._device)
-        self.maps = EnvironmentMaps()
-        self.harmonics, self._suns = None, ()
+        lighting = EnvironmentLighting(EnvironmentMaps())
         if environment is not None and any(wanted):
             with self._statistics.stage("environment"):
-                most = {"auto": AUTO_SUNS, "off": 0}.get(str(suns), suns)
-                split = split_environment(environment, int(most))
-                self._suns = split.suns
-                if irradiance:
-                    self.harmonics = _harmonics(split, irradiance_as)
-                self.maps = self._preintegrator.prepare(
-                    split,
-                    background=background,
-                    specular=specular,
-                    irradiance=irradiance and self.harmonics is None,
-                    radiance=ibl == "filtered" and specular,
+                lighting = self._maker.make(
+                    LightingRequest(
+                        environment,
+                        _most_suns(suns),
+                        irradiance_as,
+                        background=background,
+                        specular=specular,
+                        irradiance=irradiance,
+                        radiance=ibl == "filtered" and specular,
+                    )
                 )
-                if sampled:
-                    self._add_importance(split)
+        self.maps, self._suns = lighting.maps, lighting.suns
+        self.harmonics = lighting.harmonics
+        if environment is not None and sampled:
+            with self._statistics.stage("environment"):
+                self._add_importance(environment)
         self._environment, self._made = environment, wanted
         self._options = options
-        self._report()
+        self._report(is_cached=lighting.is_cached)
         return True
 
-    def _report(self) -> None:
+    def _report(self, *, is_cached: bool) -> None:
         """Say in the statistics what lights."""
         kind = "sh" if self.harmonics is not None else None
         if self.maps.irradiance is not None:
@@ -138,14 +144,14 @@ class LightSources:
             prefiltered_levels=(
                 0 if self.maps.specular is None else self.maps.specular_levels
             ),
-            cached=False,
+            cached=is_cached,
             samples_per_pixel=0,
             estimated_error=None,
         )
 
-    def _add_importance(self, environment: SplitEnvironment) -> None:
+    def _add_importance(self, environment: Environment) -> None:
         """Add the table by which the whole map is sampled."""
-        table = importance_table(environment.full)
+        table = importance_table(full_map(environment, 0))
         height, width, _ = table.shape
         texture = self._device.create_texture(
             TextureDescriptor(
@@ -197,18 +203,10 @@ def light_capacity(count: int) -> int:
     return max(_SMALLEST_CAPACITY, 1 << math.ceil(math.log2(count)))
 
 
-def _harmonics(
-    split: SplitEnvironment, irradiance_as: str
-) -> NDArray[np.float64] | None:
-    """Coefficients of irradiance, unless a cube is wanted or better."""
-    if irradiance_as == "cube":
-        return None
-    coefficients = irradiance_harmonics(split.base)
-    if irradiance_as == "sh":
-        return coefficients
-    error = irradiance_error(split.base, coefficients)
-    needs_cube = _HARMONICS_SUFFICE < error < _HARMONICS_SEE_A_SUN
-    return None if needs_cube else coefficients
+def _most_suns(suns: str | int) -> int:
+    if isinstance(suns, int):
+        return suns
+    return AUTO_SUNS if suns == "auto" else 0
 
 
 def _sun_rows(scene: Scene, suns: tuple[Sun, ...]) -> NDArray[np.void]:

@@ -1,0 +1,43 @@
+"""What is asked for of an environment, and what it then is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.lighting.environment import Environment, Sun
+from moka.lighting.preintegration import EnvironmentMaps
+
+__all__ = ["EnvironmentLighting", "LightingRequest"]
+
+
+@dataclass(frozen=True, slots=True)
+class LightingRequest:
+    """What is asked for of an environment.
+
+    ``most_suns`` may become lights; ``irradiance_as`` is ``auto``, ``sh`` or
+    ``cube``. ``specular`` and ``irradiance`` are what surfaces reflect, with
+    ``radiance`` for filtered lighting; ``background`` is the map itself.
+    """
+
+    environment: Environment
+    most_suns: int
+    irradiance_as: str = "auto"
+    background: bool = False
+    specular: bool = False
+    irradiance: bool = False
+    radiance: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EnvironmentLighting:
+    """An environment as a frame uses it.
+
+    ``harmonics`` are coefficients (9, 3) of irradiance, where no cube of
+    ``maps`` holds it. ``is_cached`` tells whether it came from the disk.
+    """
+
+    maps: EnvironmentMaps
+    suns: tuple[Sun, ...] = ()
+    harmonics: NDArray[np.float64] | None = None
+    is_cached: bool = False

@@ -1,0 +1,195 @@
+"""Preintegrated lighting, kept on disk from one run to the next.
+
+What is found by its key need not be made: neither the passes over the
+environment, nor their programs, nor what the CPU finds out about suns and
+irradiance. It is what this very driver made of this very environment, read
+back to the last bit, so that pictures with and without the cache are the
+same.
+"""
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.descriptors import TextureDescriptor, TextureKind
+from moka.commands.handles import Handle
+from moka.core.resources import shader_folder
+from moka.graphics.device import GraphicsDevice
+from moka.lighting.disk_cache import Arrays, DiskCache
+from moka.lighting.environment import Sun
+from moka.lighting.environment_lighting import (
+    EnvironmentLighting,
+    LightingRequest,
+)
+from moka.lighting.preintegration import (
+    CUBE_FORMAT,
+    TABLE_FORMAT,
+    TABLE_SIZE,
+    EnvironmentMaps,
+)
+from moka.version import __version__
+
+__all__ = ["LightingCache"]
+
+
+class LightingCache:
+    """Finds and keeps lighting and BRDF tables of one device.
+
+    Without ``files`` it finds nothing and keeps nothing. What is kept is
+    read back and written by :meth:`flush`, at a time when nobody waits.
+    """
+
+    def __init__(self, device: GraphicsDevice, files: DiskCache | None) -> None:
+        self._device = device
+        self._files = files
+        self._pending: dict[str, Callable[[], Arrays]] = {}
+
+    def load(self, request: LightingRequest) -> EnvironmentLighting | None:
+        """What ``request`` led to before, on the GPU again.
+
+        Without the environment map itself, which is the caller's to upload.
+        """
+        if self._files is None or not _takes_time(request):
+            return None
+        arrays = self._files.load(self._environment_key(request))
+        return None if arrays is None else self._uploaded(arrays)
+
+    def keep(
+        self, request: LightingRequest, lighting: EnvironmentLighting
+    ) -> None:
+        """Write ``lighting`` at the next :meth:`flush`, if it is alive."""
+        if self._files is not None and _takes_time(request):
+            key = self._environment_key(request)
+            self._pending[key] = lambda: self._read_lighting(lighting)
+
+    def load_table(self, brdf: str) -> Handle | None:
+        """The BRDF table of ``brdf``, if it was made before."""
+        if self._files is None:
+            return None
+        arrays = self._files.load(self._key("table", brdf))
+        if arrays is None:
+            return None
+        descriptor = TextureDescriptor(
+            TABLE_FORMAT, TABLE_SIZE, TABLE_SIZE, label="table"
+        )
+        return self._device.create_texture(descriptor, [arrays["table"]])
+
+    def keep_table(self, brdf: str, table: Handle) -> None:
+        """Write ``table`` at the next :meth:`flush`."""
+        if self._files is not None:
+            self._pending[self._key("table", brdf)] = lambda: {
+                "table": self._device.read_texture(table)
+            }
+
+    @property
+    def is_pending(self) -> bool:
+        """Whether :meth:`flush` has anything to write."""
+        return bool(self._pending)
+
+    def flush(self) -> None:
+        """Write what is to be kept; waits for the GPU and the disk."""
+        pending, self._pending = self._pending, {}
+        for key, read in pending.items():
+            assert self._files is not None
+            self._files.store(key, read())
+
+    def _environment_key(self, request: LightingRequest) -> str:
+        return self._key(
+            "environment",
+            request.environment.digest.hex(),
+            request.most_suns,
+            request.irradiance_as,
+            request.specular,
+            request.irradiance,
+            request.radiance,
+        )
+
+    def _key(self, *parts: object) -> str:
+        """A key of ``parts``, of this driver and of how moka makes things."""
+        info = self._device.info
+        driver = (info.kind, info.vendor, info.renderer, info.version)
+        text = repr((parts, driver, _makers()))
+        return hashlib.blake2b(text.encode(), digest_size=20).hexdigest()
+
+    def _uploaded(self, arrays: Arrays) -> EnvironmentLighting:
+        maps = EnvironmentMaps()
+        for name in ("specular", "irradiance", "radiance"):
+            levels: list[NDArray[Any]] = []
+            while (level := arrays.get(f"{name} {len(levels)}")) is not None:
+                levels.append(level)
+            if not levels:
+                continue
+            size = levels[0].shape[1]
+            cube = self._device.create_texture(
+                TextureDescriptor(
+                    CUBE_FORMAT, size, size, TextureKind.CUBE, len(levels)
+                ),
+                levels,
+            )
+            setattr(maps, name, cube)
+            maps.resources.append(cube)
+            if name == "specular":
+                maps.specular_levels = len(levels)
+        suns = tuple(
+            Sun((x, y, z), (red, green, blue), radius)
+            for x, y, z, red, green, blue, radius in arrays["suns"].tolist()
+        )
+        return EnvironmentLighting(
+            maps, suns, arrays.get("harmonics"), is_cached=True
+        )
+
+    def _read_lighting(self, lighting: EnvironmentLighting) -> Arrays:
+        maps = lighting.maps
+        arrays: dict[str, NDArray[Any]] = {
+            "suns": np.array(
+                [
+                    (*sun.direction, *sun.irradiance, sun.angular_radius)
+                    for sun in lighting.suns
+                ]
+            ).reshape(-1, 7)
+        }
+        if lighting.harmonics is not None:
+            arrays["harmonics"] = lighting.harmonics
+        for name, levels in (
+            ("specular", maps.specular_levels),
+            ("irradiance", 1),
+            ("radiance", maps.radiance_levels),
+        ):
+            cube = getattr(maps, name)
+            if cube is None:
+                continue
+            for level in range(levels):
+                arrays[f"{name} {level}"] = np.stack(
+                    [
+                        self._device.read_texture(cube, level=level, face=face)
+                        for face in range(6)
+                    ]
+                )
+        return arrays
+
+
+def _takes_time(request: LightingRequest) -> bool:
+    """Whether there is anything to make; of uniform light there is not."""
+    return not request.environment.is_uniform and (
+        request.specular or request.irradiance
+    )
+
+
+@cache
+def _makers() -> str:
+    """A digest of all code whose constants and formulas shape lighting.
+
+    Coarse on purpose: an edit too many costs a preintegration, one that was
+    missed would be a wrong picture.
+    """
+    digest = hashlib.blake2b(f"{__version__} {np.__version__}".encode())
+    modules = Path(__file__).parent.glob("*.py")
+    shaders = shader_folder().rglob("*.*")
+    for path in sorted((*modules, *shaders)):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
