@@ -42,6 +42,7 @@ from moka.renderer.prepared_scene import (
 from moka.renderer.progressive import Progressive
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
+from moka.renderer.sky_map import SkyMap
 from moka.renderer.targets import Targets, make_targets
 from moka.renderer.textures import TexturePool
 from moka.renderer.view import View, look_through
@@ -88,6 +89,7 @@ class Renderer:
         passes = FullscreenPasses(device)
         self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)
+        self._sky_map = SkyMap(device)
         self._sources = LightSources(device, passes, self.statistics, cache)
         self._programs = ProgramCache(device)
         self._geometry = GeometryPool(device)
@@ -262,6 +264,7 @@ class Renderer:
         )
         if changed:
             self._screen.forget()
+            self._sky_map.forget()
             self._prepared_key = None
 
     def _prepare(
@@ -426,11 +429,13 @@ class Renderer:
         if scene.background != "environment" or environment_map is None:
             return None
         return Sky(
-            environment_map,
+            self._sky_map.without_suns(scene.environment, environment_map),
             view,
             rotation=scene.environment_rotation,
             intensity=scene.environment_intensity,
             float_target=self.settings.float_output or self._accumulates,
+            suns=scene.environment.suns,
+            height=self.size[1],
         )
 
     def _draw_display(

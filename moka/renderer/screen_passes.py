@@ -1,5 +1,9 @@
 """The passes over the whole picture: what is behind, and the display."""
 
+import math
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from moka.commands.command_list import CommandList
@@ -22,19 +26,30 @@ from moka.graphics.uniform_block import (
     ParameterType,
     UniformLayout,
 )
+from moka.lighting.environment import Sun
 from moka.lighting.preintegration import CUBE_SAMPLER, MAP_SAMPLER
 from moka.renderer.targets import Targets
 from moka.renderer.view import View
 
 __all__ = ["ScreenPasses", "Sky"]
 
-_BACKGROUND = UniformLayout(
-    "Background",
-    (
+# Discs of suns that a sky shows; a map may show any number.
+MOST_DISCS = 64
+
+
+def _background(discs: int) -> UniformLayout:
+    parameters = [
         Parameter("direction_from_clip", ParameterType.MAT4),
         Parameter("parameters", ParameterType.VEC4),
-    ),
-)
+    ]
+    if discs:
+        parameters += [
+            Parameter("sun_discs", ParameterType.VEC4, discs),
+            Parameter("sun_radiances", ParameterType.VEC4, discs),
+        ]
+    return UniformLayout("Background", tuple(parameters))
+
+
 _TONE_MAP = UniformLayout(
     "ToneMap",
     (
@@ -48,7 +63,9 @@ class Sky:
     """What is seen of an environment by one camera.
 
     ``rotation`` is in radians about +Y; a ``float_target`` can hold any
-    radiance, others what half floats can.
+    radiance, others what half floats can. ``suns`` are drawn as discs, the
+    first 64 of them, with edges for a picture of ``height`` pixels; they are
+    not in the map.
     """
 
     def __init__(
@@ -59,17 +76,31 @@ class Sky:
         rotation: float,
         intensity: float,
         float_target: bool,
+        suns: Sequence[Sun] = (),
+        height: int = 1,
     ) -> None:
         self.binding = TextureBinding(
             "environment_map", environment_map, MAP_SAMPLER
         )
         self.defines = {"MOKA_FLOAT_TARGET": 1} if float_target else {}
-        self.block = _BACKGROUND.pack(
-            {
-                "direction_from_clip": view.direction_from_clip(rotation),
-                "parameters": (intensity, 0.0, 0.0, 0.0),
-            }
-        )
+        values: dict[str, Any] = {
+            "direction_from_clip": view.direction_from_clip(rotation),
+            "parameters": (intensity, 0.0, 2.0 / height, 0.0),
+        }
+        suns = suns[:MOST_DISCS]
+        if suns:
+            self.defines["MOKA_SUN_DISCS"] = len(suns)
+            # A point would have no radiance that could be drawn.
+            radii = [max(sun.angular_radius, 1e-5) for sun in suns]
+            values["sun_discs"] = [
+                (*sun.direction, radius)
+                for sun, radius in zip(suns, radii, strict=True)
+            ]
+            values["sun_radiances"] = [
+                (*np.divide(sun.irradiance, math.pi * math.sin(radius) ** 2), 0)
+                for sun, radius in zip(suns, radii, strict=True)
+            ]
+        self.block = _background(len(suns)).pack(values)
 
 
 class ScreenPasses:
@@ -81,7 +112,7 @@ class ScreenPasses:
         self._device = device
         self._passes = passes
         self._groups: dict[BindGroupDescriptor, Handle] = {}
-        self._background = self._buffer(_BACKGROUND)
+        self._background = self._buffer(_background(MOST_DISCS))
         self._sky_block = UniformBinding("Background", self._background)
         self._tone_map = self._buffer(_TONE_MAP)
 

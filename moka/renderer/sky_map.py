@@ -1,0 +1,46 @@
+"""The map that is seen behind a scene."""
+
+from moka.commands.descriptors import PixelFormat, TextureDescriptor
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+from moka.lighting.environment import Environment
+
+__all__ = ["SkyMap"]
+
+
+class SkyMap:
+    """Keeps the texture of an environment whose suns are drawn as discs.
+
+    In the map that mirrors show they are a texel or two, which would look
+    like squares.
+    """
+
+    def __init__(self, device: GraphicsDevice) -> None:
+        self._device = device
+        self._texture: Handle | None = None
+
+    def without_suns(
+        self, environment: Environment, environment_map: Handle
+    ) -> Handle:
+        """The map without the environment's own suns.
+
+        ``environment_map`` has them; it is the answer if there are none.
+        The texture stays until :meth:`forget`.
+        """
+        if not environment.suns:
+            return environment_map
+        if self._texture is None:
+            height, width, _ = environment.pixels.shape
+            self._texture = self._device.create_texture(
+                TextureDescriptor(
+                    PixelFormat.RGB32F, width, height, label="sky map"
+                ),
+                [environment.pixels],
+            )
+        return self._texture
+
+    def forget(self) -> None:
+        """Destroy the texture, which was another environment's."""
+        if self._texture is not None:
+            self._device.destroy(self._texture)
+            self._texture = None
