@@ -11,7 +11,9 @@ __all__ = ["add_arguments", "execute"]
 # what is heavy where it is used: all of them are imported for their options.
 _BENCHMARKS = {
     "accuracy": "Error of every mode of lighting against time.",
+    "cold": "Time of a render in a fresh process, stage by stage.",
     "frame": "Time of a frame of a steady orbit around a model.",
+    "versus": "Run two benchmarks in turn; print the ratios of medians.",
 }
 
 
