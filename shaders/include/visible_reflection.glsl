@@ -15,14 +15,19 @@ float cap_bound(vec3 v, float alpha) {
         / (s_squared + squared * v.z * v.z);
 }
 
-vec3 sample_visible_reflection(vec2 point, vec3 v, float alpha) {
+// Half vectors; the reflection of v about one is sample_visible_reflection's.
+vec3 sample_reflecting_normal(vec2 point, vec3 v, float alpha) {
     vec3 stretched = normalize(vec3(v.xy * alpha, v.z));
     float angle = 2.0 * PI * point.x;
     float lowest = cap_bound(v, alpha) * stretched.z;
     float z = 1.0 - point.y * (1.0 + lowest);
     float radius = sqrt(max(1.0 - z * z, 0.0));
     vec3 h = vec3(radius * cos(angle), radius * sin(angle), z) + stretched;
-    h = normalize(vec3(h.xy * alpha, h.z));
+    return normalize(vec3(h.xy * alpha, h.z));
+}
+
+vec3 sample_visible_reflection(vec2 point, vec3 v, float alpha) {
+    vec3 h = sample_reflecting_normal(point, v, alpha);
     return 2.0 * dot(v, h) * h - v;
 }
 
