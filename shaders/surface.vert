@@ -27,7 +27,7 @@ out vec2 surface_uv_1;
 #endif
 #ifdef MOKA_VERTEX_COLOUR
 in vec4 colour_0;
-out vec4 surface_colour;
+centroid out vec4 surface_colour;  // as the normal
 #endif
 
 void main() {
@@ -55,7 +55,10 @@ void main() {
     surface_uv_1 = uv_1;
 #endif
 #ifdef MOKA_VERTEX_COLOUR
-    surface_colour = colour_0;
+    // A part of light: glTF 2.0 keeps it within 0..1, files do not. NaN is
+    // not greater than 0.
+    surface_colour = mix(
+        vec4(0.0), min(colour_0, 1.0), greaterThan(colour_0, vec4(0.0)));
 #endif
     gl_Position = clip_from_world * vec4(surface_position, 1.0);
 #ifdef MOKA_POINTS

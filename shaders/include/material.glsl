@@ -9,7 +9,7 @@ in vec2 surface_uv_0;
 in vec2 surface_uv_1;
 #endif
 #ifdef MOKA_VERTEX_COLOUR
-in vec4 surface_colour;
+centroid in vec4 surface_colour;
 #endif
 
 // SURFACE_UV(slot, SLOT) is the texture coordinate of a slot: its set, moved

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from moka.core.errors import OptionError
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
-from moka.material.material import Material
+from moka.material.material import AlphaMode, Material
 from moka.model.geometry import quad
 from moka.model.lights import LightKind, PunctualLight
 from moka.model.mesh import Primitive
@@ -365,3 +365,53 @@ def test_two_hundred_and_fifty_six_lamps_and_no_more(
     )
     with pytest.raises(OptionError, match=r"257 lights shine; .* up to 256"):
         shade_of_centre(egl_device, 257 * one)
+
+
+@pytest.mark.parametrize("alpha_mode", AlphaMode)
+@pytest.mark.parametrize("unlit", [True, False])
+@pytest.mark.parametrize(
+    ("value", "taken_for"),
+    [(math.nan, 0), (math.inf, 1), (1e38, 1), (-1, 0), (-math.inf, 0)],
+)
+def test_vertex_colours_that_are_none(
+    egl_device: GraphicsDevice,
+    alpha_mode: AlphaMode,
+    unlit: bool,
+    value: float,
+    taken_for: float,
+) -> None:
+    """They are a part of light, so they end at 0 and 1; NaN is 0."""
+    up = normals_of([1.0])
+    material = Material(alpha_mode=alpha_mode, unlit=unlit, metallic_factor=0.5)
+    shown = [
+        draw_rows(
+            egl_device,
+            scene_of_rows(
+                [(row_of_squares(up, COLOR_0=[[colour] * 4]), material)],
+                Environment.uniform((1.0, 1.0, 1.0)),
+                sun_from((0.0, 0.0, 1.0)),
+            ),
+            1,
+        )
+        for colour in (value, taken_for)
+    ]
+    assert np.array_equal(*shown)
+    assert np.isfinite(shown[0]).all()
+
+
+def test_vertex_colours_stay_within_theirs_at_edges(
+    egl_device: GraphicsDevice,
+) -> None:
+    """Interpolated for a pixel whose centre is outside, they would not."""
+    corners = np.array([(-0.9, -0.8, 0), (0.93, -0.76, 0), (0.1, 0.89, 0)])
+    colours = np.array([(0, 0.5, 1, 1), (1, 0.5, 0, 1), (0, 0.5, 0, 1)])
+    triangle = Primitive({"POSITION": corners, "COLOR_0": colours})
+    material = Material(unlit=True)
+    scene = scene_of([(triangle, material, np.eye(4))], None, "transparent")
+    picture = draw_radiance(
+        egl_device, scene, square_camera(), (12, 12), samples=4
+    )
+    covered = picture[picture[..., 3] > 0]
+    assert np.allclose(covered[:, 1], 0.5 * covered[:, 3], atol=1e-6)
+    assert (covered[:, :3] >= 0.0).all()
+    assert (covered[:, [0, 2]].sum(axis=1) <= covered[:, 3] + 1e-5).all()
