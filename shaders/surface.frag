@@ -53,8 +53,6 @@ void main() {
     light += emission(row);
 #endif
 #endif
-#ifndef MOKA_FLOAT_TARGET
-    light = min(light, HALF_MAXIMUM);
-#endif
+    light = min(light, RADIANCE_MAXIMUM);
     radiance = vec4(light * coverage, coverage);
 }

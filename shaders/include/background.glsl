@@ -52,8 +52,5 @@ vec3 background_radiance(vec2 uv) {
     radiance += sun_light(direction);
 #endif
     radiance *= parameters.x;
-#ifndef MOKA_FLOAT_TARGET
-    radiance = min(radiance, HALF_MAXIMUM);
-#endif
-    return radiance;
+    return min(radiance, RADIANCE_MAXIMUM);
 }

@@ -193,7 +193,8 @@ vec3 punctual_light(Surface surface) {
         float attenuation = 1.0;
         if (light.positional != 0.0) {
             towards = light.position - surface_position;
-            float squared = dot(towards, towards);
+            // The square of a distance beyond 1e19 m is infinite.
+            float squared = min(dot(towards, towards), 1e38);
             towards *= inversesqrt(max(squared, 1e-30));
             float cone = dot(-towards, light.direction);
             float spot = clamp(
@@ -220,8 +221,9 @@ vec3 punctual_light(Surface surface) {
         vec3 reflected = fresnel * scale * lobe
             + share * diffuse_brdf(
                 angles, surface.diffuse_colour, surface.roughness);
-        sum += reflected * light.intensity
-            * (angles.n_dot_l * attenuation);
+        vec3 arriving = min(
+            light.intensity * (angles.n_dot_l * attenuation), LIGHT_MAXIMUM);
+        sum += reflected * arriving;
     }
     return sum;
 }

@@ -307,6 +307,15 @@ def test_a_lamp_on_the_surface_shines_along_it(
     assert shade_of_centre(egl_device, lights) <= 1e20
 
 
+@pytest.mark.parametrize("distance", [1e20, 1e30, 1e38, 1e300])
+@pytest.mark.parametrize("kind", [LightKind.POINT, LightKind.SPOT])
+def test_a_lamp_beyond_what_squares_hold_is_dark(
+    egl_device: GraphicsDevice, distance: float, kind: LightKind
+) -> None:
+    lights = lamp(distance, kind=kind, intensity=1.0)
+    assert shade_of_centre(egl_device, lights) <= 1e-30
+
+
 @pytest.mark.parametrize("reach", [1e-300, 1e-30, 1.0, 1.001, 2.0, 1e30, 1e300])
 def test_the_edge_of_a_lamps_range(
     egl_device: GraphicsDevice, reach: float
@@ -346,6 +355,26 @@ def test_a_spot_whose_cones_are_one(
     outside = cosine < math.cos(angle) - 1e-6
     assert (picture[inside][:, 0] > 0.0).all()
     assert (picture[outside][:, 0] == 0.0).all()
+
+
+@pytest.mark.parametrize("brdf", BRDFS)
+def test_a_lamp_of_any_intensity(egl_device: GraphicsDevice, brdf: str) -> None:
+    primitive = row_of_squares(normals_of(N_DOT_V))
+    rows = [(primitive, material) for material in MATERIALS]
+    for kind, intensity, float_output in itertools.product(
+        LightKind, (0.0, 1e12, 1e38, 1e300), (True, False)
+    ):
+        lights = lamp(100.0, kind=kind, intensity=intensity)
+        picture = draw_rows(
+            egl_device,
+            scene_of_rows(rows, lights=lights),
+            len(N_DOT_V),
+            brdf=brdf,
+            float_output=float_output,
+        )
+        assert np.isfinite(picture).all()
+        assert (picture >= 0.0).all()
+        assert (picture[..., :3].max() > 0.0) == (intensity > 0.0)
 
 
 @pytest.mark.parametrize("kind", LightKind)
