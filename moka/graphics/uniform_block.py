@@ -21,6 +21,9 @@ from moka.core.errors import CommandError
 __all__ = ["Parameter", "ParameterType", "UniformLayout"]
 
 
+# Of what float32 holds.
+_LARGEST = np.finfo(np.float32).max
+
 class ParameterType(Enum):
     """A GLSL type: its name, NumPy scalar, shape as given, alignment.
 
@@ -138,7 +141,8 @@ class UniformLayout:
         _, scalar, shape, _ = parameter.type.value
         expected = ((parameter.count,) if parameter.count else ()) + shape
         try:
-            array = np.asarray(value, scalar)
+            with np.errstate(over="ignore"):
+                array = np.asarray(value, scalar)
         except (TypeError, ValueError):
             array = np.empty((0, 0, 0, 0))
         if array.shape != expected:
@@ -146,6 +150,9 @@ class UniformLayout:
                 f"block {self.name}: parameter {parameter.name!r} is a "
                 f"{parameter.type.glsl} of shape {expected}, got {value!r}"
             )
+        if scalar == "f4":
+            # One infinity would make NaN of all that it meets.
+            array = np.minimum(np.maximum(array, -_LARGEST), _LARGEST)
         if not parameter.type.is_matrix:
             if parameter.count and len(shape) < 2:
                 return _pad_last(array, shape, scalar)

@@ -444,3 +444,24 @@ def test_vertex_colours_stay_within_theirs_at_edges(
     assert np.allclose(covered[:, 1], 0.5 * covered[:, 3], atol=1e-6)
     assert (covered[:, :3] >= 0.0).all()
     assert (covered[:, [0, 2]].sum(axis=1) <= covered[:, 3] + 1e-5).all()
+
+
+@pytest.mark.parametrize("float_output", [True, False])
+def test_emission_of_any_strength(
+    egl_device: GraphicsDevice, float_output: bool
+) -> None:
+    for strength in (1e5, 1e30, 1e38, 1e300):
+        glow = Material(emissive_factor=(strength, 0, 0))
+        scene = scene_of([(quad(2.0), glow, np.eye(4))])
+        for samples in (1, 4):
+            picture = draw_radiance(
+                egl_device,
+                scene,
+                square_camera(),
+                (4, 4),
+                samples=samples,
+                float_output=float_output,
+            )
+            assert np.isfinite(picture).all()
+            least = min(strength, 1e30) if float_output else 65504
+            assert picture[1, 1, 0] >= 0.999 * least

@@ -71,6 +71,12 @@ def test_the_declaration_names_everything() -> None:
     assert rows.size == 128
 
 
+def test_what_float32_cannot_hold_becomes_the_largest_it_can() -> None:
+    row = EXAMPLE.pack({"c": (1e300, -np.inf, 1.0)})
+    largest = np.finfo(np.float32).max
+    assert row.view(np.float32)[4:7].tolist() == [largest, -largest, 1.0]
+
+
 @pytest.mark.parametrize(
     "values",
     [{"a": (1, 2)}, {"b": 1}, {"f": np.zeros((4, 4))}, {"a": "red"}],
