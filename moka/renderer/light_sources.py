@@ -174,9 +174,12 @@ class LightSources:
         if self._suns:
             rows = np.concatenate([rows, _sun_rows(scene, self._suns)])
         if len(rows) > MOST_LIGHTS:
+            suns = len(self._suns)
+            beside = f" and {suns} sun{'s' * (suns > 1)}" if suns else ""
+            advice = "; turn suns off to leave them in the map" if suns else ""
             raise OptionError(
-                f"scene: {len(rows)} lights shine; moka draws up to "
-                f"{MOST_LIGHTS} at once"
+                f"scene: {len(rows) - suns} lights{beside} shine; moka draws "
+                f"up to {MOST_LIGHTS} at once{advice}"
             )
         return rows
 

@@ -396,6 +396,22 @@ def test_two_hundred_and_fifty_six_lamps_and_no_more(
         shade_of_centre(egl_device, 257 * one)
 
 
+def test_suns_that_find_no_room_beside_lamps_are_named(
+    egl_device: GraphicsDevice,
+) -> None:
+    sky = np.full((128, 256, 3), 0.1, np.float32)
+    sky[40, 100] = 1e6
+    scene = scene_of(
+        [(quad(2.0), MATT, np.eye(4))],
+        Environment(sky),
+        lights=256 * lamp(1.0),
+    )
+    with pytest.raises(OptionError, match=r"256 lights and 1 sun.*suns"):
+        draw_radiance(egl_device, scene, square_camera())
+    picture = draw_radiance(egl_device, scene, square_camera(), suns="off")
+    assert np.isfinite(picture).all()
+
+
 @pytest.mark.parametrize("alpha_mode", AlphaMode)
 @pytest.mark.parametrize("unlit", [True, False])
 @pytest.mark.parametrize(
