@@ -1,11 +1,20 @@
 """What a series of measurements says: middle, spread, ratios, growth."""
 
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Ratio", "Spread", "growth_exponent", "ratio_of_pairs", "spread"]
+__all__ = [
+    "Ratio",
+    "Spread",
+    "growth_exponent",
+    "milliseconds_in_turn",
+    "ratio_of_pairs",
+    "spread",
+]
 
 Array = NDArray[np.float64]
 
@@ -69,6 +78,23 @@ def spread(values: ArrayLike) -> Spread:
         float(p95),
         len(series),
     )
+
+
+def milliseconds_in_turn(
+    jobs: Mapping[str, Callable[[], object]], rounds: int
+) -> dict[str, dict[str, float]]:
+    """The spread of each job's time, run A B A B.
+
+    The first round, which is not counted, fills caches.
+    """
+    times: dict[str, list[float]] = {name: [] for name in jobs}
+    for number in range(1 + rounds):
+        for name, job in jobs.items():
+            start = time.perf_counter()
+            job()
+            if number:
+                times[name].append(1000.0 * (time.perf_counter() - start))
+    return {name: spread(each).as_dict() for name, each in times.items()}
 
 
 def ratio_of_pairs(values: ArrayLike, base: ArrayLike) -> Ratio:

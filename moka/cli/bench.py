@@ -13,6 +13,9 @@ _BENCHMARKS = {
     "accuracy": "Error of every mode of lighting against time.",
     "cold": "Time of a render in a fresh process, stage by stage.",
     "frame": "Time of a frame of a steady orbit around a model.",
+    "scale": "Growth of a frame's time with objects, lights, pixels and more.",
+    "lighting": "Time to preintegrate environments, or to find them cached.",
+    "commands": "Time to record, sort and merge draws, without a GPU.",
     "versus": "Run two benchmarks in turn; print the ratios of medians.",
 }
 
