@@ -45,7 +45,6 @@ ONLY_IMPORTERS = {
     "matplotlib": ("moka.bench.*", "moka.survey.*"),
     "moderngl": ("moka.backend.*",),
     "moderngl_window": ("moka.app.window*", "moka.backend.contexts*"),
-    "msgspec": ("moka.model.*",),
     "pygltflib": ("moka.model.*",),
     "scipy": ("moka.bench.*", "moka.survey.*"),
 }

@@ -236,7 +236,7 @@ def _render_with(
             version=info.version,
         )
         for counters in work:
-            for name in counters.__slots__:
+            for name in counters.__struct_fields__:
                 statistics.count(name, getattr(counters, name))
         image = _image(request, radiance, display)
         if deliver is not None:

@@ -7,9 +7,9 @@ it. All of it on whole arrays: the cost in Python is per batch, not per draw.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.command_list import DrawSpan, Recording
@@ -65,8 +65,7 @@ class MeshTable:
         self.rows[index] = (count, first, base_vertex, source, indexed)
 
 
-@dataclass(frozen=True, slots=True)
-class Batches:
+class Batches(Struct, frozen=True):
     """Indirect commands of a frame and how they group into batches.
 
     Batch ``i`` is ``commands[start[i]:start[i + 1]]``; ``program``,

@@ -5,8 +5,9 @@ layouts answer by name. Each pair is matched once, when it first meets.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
+
+from msgspec import Struct
 
 from moka.backend.gl_textures import GlTexture, SamplerCache
 from moka.commands.descriptors import (
@@ -94,8 +95,7 @@ class GlProgram:
         self.program.release()
 
 
-@dataclass(frozen=True, slots=True)
-class Bindings:
+class Bindings(Struct, frozen=True):
     """What one bind group binds for one program.
 
     Arguments of :meth:`StateCache.texture` and ``uniform_block``.
@@ -153,8 +153,7 @@ def match_bindings(
     return Bindings(tuple(bound_textures), tuple(bound_blocks))
 
 
-@dataclass(frozen=True, slots=True)
-class VertexSource:
+class VertexSource(Struct, frozen=True):
     """What must be bound to draw meshes: buffers, layout, topology."""
 
     topology: Topology

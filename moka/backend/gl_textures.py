@@ -5,10 +5,10 @@ software driver glGenerateMipmap costs ten times the upload.
 """
 
 from ctypes import addressof, c_uint
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.backend import gl_constants as c
@@ -173,8 +173,7 @@ class SamplerCache:
         return name
 
 
-@dataclass(frozen=True, slots=True)
-class _Attached:
+class _Attached(Struct, frozen=True):
     texture: GlTexture
     attachment: Attachment
 

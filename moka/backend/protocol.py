@@ -5,9 +5,9 @@ checked by the device; a backend trusts them.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
 
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.command_list import Recording
@@ -28,8 +28,7 @@ __all__ = ["Backend", "BackendInfo", "FrameCounters", "TextureData"]
 TextureData = Sequence[NDArray[Any]]
 
 
-@dataclass(frozen=True, slots=True)
-class BackendInfo:
+class BackendInfo(Struct, frozen=True):
     """Facts about the driver that layers above may act on."""
 
     kind: str
@@ -45,8 +44,7 @@ class BackendInfo:
     multi_draw_indirect: bool = False
 
 
-@dataclass(slots=True)
-class FrameCounters:
+class FrameCounters(Struct):
     """Work done and skipped while one recording was executed."""
 
     draw_packets: int = 0

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from msgspec.structs import asdict
 from numpy.typing import NDArray
 
 from moka.commands.command_list import CommandList
@@ -75,6 +76,5 @@ def time_frames(
     return FrameTimes(
         frame_ms,
         submit_ms,
-        renderer.statistics.counts
-        | {name: getattr(counters, name) for name in counters.__slots__},
+        renderer.statistics.counts | asdict(counters),
     )

@@ -6,10 +6,10 @@ row each, every row with a key of its own). Every packet carries all that it
 needs, so nothing set for one draw reaches the next.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.commands import (
@@ -41,16 +41,14 @@ __all__ = ["CommandBuffer", "CommandList", "DrawSpan", "Recording"]
 _MAXIMUM_KEY = (1 << 64) - 1
 
 
-@dataclass(frozen=True, slots=True)
-class DrawSpan:
+class DrawSpan(Struct, frozen=True):
     """Rows ``start`` to ``stop`` of a recording's draws."""
 
     start: int
     stop: int
 
 
-@dataclass(frozen=True, slots=True)
-class Recording:
+class Recording(Struct, frozen=True):
     """A finished command list, as a backend executes it.
 
     ``steps`` is the frame in order: rare commands and spans of ``draws``.

@@ -6,9 +6,9 @@ so draws are rows of arrays (:mod:`moka.commands.draws`).
 Rectangles are in pixels from the lower left corner, as GL counts them.
 """
 
-from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.handles import Handle
@@ -27,8 +27,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class BindFramebuffer:
+class BindFramebuffer(Struct, frozen=True):
     """Draw into ``framebuffer``; None is the window.
 
     Also ends the scissor and sets the viewport to the whole of it; a window
@@ -38,46 +37,40 @@ class BindFramebuffer:
     framebuffer: Handle | None
 
 
-@dataclass(frozen=True, slots=True)
-class Clear:
+class Clear(Struct, frozen=True):
     """Clear what is given: linear RGBA colour, depth, or both."""
 
     colour: tuple[float, float, float, float] | None = None
     depth: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SetViewport:
+class SetViewport(Struct, frozen=True):
     """Map clip space to this rectangle (x, y, width, height)."""
 
     rectangle: tuple[int, int, int, int]
 
 
-@dataclass(frozen=True, slots=True)
-class SetScissor:
+class SetScissor(Struct, frozen=True):
     """Draw and clear only inside this rectangle; None is everywhere."""
 
     rectangle: tuple[int, int, int, int] | None
 
 
-@dataclass(frozen=True, slots=True)
-class FillBuffer:
+class FillBuffer(Struct, frozen=True):
     """Write ``data`` into ``buffer`` at ``offset``; copied when recorded."""
 
     buffer: Handle
-    data: bytes = field(repr=False)
+    data: bytes
     offset: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class GenerateMipmaps:
+class GenerateMipmaps(Struct, frozen=True):
     """Make the lower mip levels of ``texture`` from level 0."""
 
     texture: Handle
 
 
-@dataclass(frozen=True, slots=True)
-class ResolveFramebuffer:
+class ResolveFramebuffer(Struct, frozen=True):
     """Average the samples of ``source`` into ``target`` of equal size."""
 
     source: Handle
@@ -98,8 +91,7 @@ class Readback:
         self.data: NDArray[Any] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class ReadPixels:
+class ReadPixels(Struct, frozen=True):
     """Read one colour attachment of a framebuffer, bottom row first.
 
     ``dtype`` is ``f4`` for float32 texels or ``u1`` for bytes; rows are
@@ -108,7 +100,7 @@ class ReadPixels:
 
     framebuffer: Handle | None
     rectangle: tuple[int, int, int, int]
-    into: Readback = field(compare=False)
+    into: Readback
     attachment: int = 0
     channels: int = 4
     dtype: str = "f4"

@@ -4,8 +4,9 @@ Nothing here knows OpenGL; the backend translates. All are values: equal
 descriptors mean equal resources, which is what caches rely on.
 """
 
-from dataclasses import dataclass, field
 from enum import Enum
+
+from msgspec import Struct
 
 from moka.commands.handles import Handle
 
@@ -46,8 +47,7 @@ class BufferUsage(Enum):
     UNIFORM = "uniform"
 
 
-@dataclass(frozen=True, slots=True)
-class BufferDescriptor:
+class BufferDescriptor(Struct, frozen=True):
     """A buffer of ``size`` bytes; ``dynamic`` when rewritten every frame."""
 
     usage: BufferUsage
@@ -115,8 +115,7 @@ class TextureKind(Enum):
     CUBE = "cube"
 
 
-@dataclass(frozen=True, slots=True)
-class TextureDescriptor:
+class TextureDescriptor(Struct, frozen=True):
     """A texture of ``levels`` mip levels (0 means the whole chain).
 
     With ``samples`` > 1 it has one level and is only written by draws;
@@ -164,8 +163,7 @@ class MipmapMode(Enum):
     LINEAR = "linear"
 
 
-@dataclass(frozen=True, slots=True)
-class SamplerDescriptor:
+class SamplerDescriptor(Struct, frozen=True):
     """How a texture is sampled. The default is glTF's: repeat, trilinear."""
 
     wrap_s: Wrap = Wrap.REPEAT
@@ -176,8 +174,7 @@ class SamplerDescriptor:
     anisotropy: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class VertexAttribute:
+class VertexAttribute(Struct, frozen=True):
     """One attribute in an interleaved vertex.
 
     ``type`` is a NumPy type code (``f4``, ``f2``, ``u1``, ``u2``, ``i1``,
@@ -192,8 +189,7 @@ class VertexAttribute:
     normalised: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class VertexLayout:
+class VertexLayout(Struct, frozen=True):
     """The attributes of an interleaved vertex of ``stride`` bytes."""
 
     attributes: tuple[VertexAttribute, ...]
@@ -220,8 +216,7 @@ class Topology(Enum):
     TRIANGLE_FAN = "triangle_fan"
 
 
-@dataclass(frozen=True, slots=True)
-class MeshDescriptor:
+class MeshDescriptor(Struct, frozen=True):
     """A range of a vertex buffer, read through an index buffer or not.
 
     ``first`` and ``count`` are indices (vertices without an index buffer);
@@ -240,8 +235,7 @@ class MeshDescriptor:
     index_type: IndexType = IndexType.UINT32
 
 
-@dataclass(frozen=True, slots=True)
-class ShaderText:
+class ShaderText(Struct, frozen=True):
     """Preprocessed GLSL and the names of the files its ``#line`` count.
 
     File ``n`` of a ``#line l n`` directive is ``files[n]``.
@@ -251,17 +245,15 @@ class ShaderText:
     files: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramDescriptor:
+class ProgramDescriptor(Struct, frozen=True):
     """A vertex and a fragment shader linked together."""
 
     vertex: ShaderText
     fragment: ShaderText
-    label: str = field(default="", compare=False)
+    label: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Attachment:
+class Attachment(Struct, frozen=True):
     """One mip level of a texture, and for cubes one face (+X -X +Y .. -Z)."""
 
     texture: Handle
@@ -269,8 +261,7 @@ class Attachment:
     face: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class FramebufferDescriptor:
+class FramebufferDescriptor(Struct, frozen=True):
     """Where draws go: colour attachments in output order, and depth."""
 
     colour: tuple[Attachment, ...]
@@ -305,8 +296,7 @@ class BlendState(Enum):
     ADDITIVE = "additive"
 
 
-@dataclass(frozen=True, slots=True)
-class RasterState:
+class RasterState(Struct, frozen=True):
     """Everything fixed about a draw; nothing is inherited from the last."""
 
     cull: CullMode = CullMode.BACK
@@ -319,8 +309,7 @@ class RasterState:
     alpha_to_coverage: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class TextureBinding:
+class TextureBinding(Struct, frozen=True):
     """A texture and its sampler for the sampler uniform ``name``.
 
     With ``level`` that one mip level is all there is, as level 0: so a pass
@@ -333,8 +322,7 @@ class TextureBinding:
     level: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class UniformBinding:
+class UniformBinding(Struct, frozen=True):
     """A range of a uniform buffer for the block ``name``; size 0 = all."""
 
     name: str
@@ -343,8 +331,7 @@ class UniformBinding:
     size: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class BindGroupDescriptor:
+class BindGroupDescriptor(Struct, frozen=True):
     """Textures and uniform blocks that a program reads, bound together."""
 
     textures: tuple[TextureBinding, ...] = ()

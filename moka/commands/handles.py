@@ -7,8 +7,9 @@ picture.
 """
 
 import threading
-from dataclasses import dataclass
 from enum import IntEnum
+
+from msgspec import Struct
 
 from moka.core.errors import CommandError
 
@@ -26,8 +27,7 @@ class ResourceKind(IntEnum):
     BIND_GROUP = 6
 
 
-@dataclass(frozen=True, slots=True)
-class Handle:
+class Handle(Struct, frozen=True):
     """Names one resource of one device.
 
     ``index`` is the slot (reused after destroy), ``generation`` how often

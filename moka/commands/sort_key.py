@@ -28,10 +28,10 @@ Keys sort ascending and the sort is stable: draws of equal key stay in the
 order they were recorded.
 """
 
-from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import ArrayLike, NDArray
 
 from moka.core.errors import CommandError
@@ -71,8 +71,7 @@ class Stage(IntEnum):
     RESOLVE = 3
 
 
-@dataclass(frozen=True, slots=True)
-class SortKey:
+class SortKey(Struct, frozen=True):
     """The fields of one key; which depth it holds depends on the stage.
 
     ``depth`` is in metres, not negative; blended keys have no mesh. As a

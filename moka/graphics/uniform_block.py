@@ -14,15 +14,16 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.errors import CommandError
 
 __all__ = ["Parameter", "ParameterType", "UniformLayout"]
 
-
 # Of what float32 holds.
 _LARGEST = np.finfo(np.float32).max
+
 
 class ParameterType(Enum):
     """A GLSL type: its name, NumPy scalar, shape as given, alignment.
@@ -53,8 +54,7 @@ class ParameterType(Enum):
         return len(self.value[2]) == 2
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(Struct, frozen=True):
     """One named value of a block; ``count`` > 0 makes it an array."""
 
     name: str

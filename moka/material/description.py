@@ -8,8 +8,9 @@ the hash: the value itself is the key, so two descriptions never collide).
 """
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from enum import IntFlag, auto
+
+from msgspec import Struct
 
 from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
@@ -47,8 +48,7 @@ class Feature(IntFlag):
     POINTS = auto()
 
 
-@dataclass(frozen=True, slots=True)
-class TextureUse:
+class TextureUse(Struct, frozen=True):
     """That a slot has a texture, and how its coordinates are made."""
 
     slot: str
@@ -56,8 +56,7 @@ class TextureUse:
     has_transform: bool
 
 
-@dataclass(frozen=True, slots=True)
-class MaterialDescription:
+class MaterialDescription(Struct, frozen=True):
     """Everything about a material that changes the shader's text."""
 
     features: Feature

@@ -5,8 +5,9 @@ its description (:mod:`moka.material.description`), what the GPU reads of it
 is its parameter row (:mod:`moka.material.parameters`).
 """
 
-from dataclasses import dataclass
 from enum import Enum
+
+from msgspec import Struct
 
 from moka.commands.descriptors import SamplerDescriptor
 from moka.core.encoded_image import EncodedImage
@@ -22,8 +23,7 @@ class AlphaMode(Enum):
     BLEND = "BLEND"
 
 
-@dataclass(frozen=True, slots=True)
-class TextureTransform:
+class TextureTransform(Struct, frozen=True):
     """KHR_texture_transform: uv' = translation * rotation * scale * uv.
 
     ``rotation`` is counter-clockwise in radians as the extension defines it.
@@ -34,8 +34,7 @@ class TextureTransform:
     scale: tuple[float, float] = (1.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Texture:
+class Texture(Struct, frozen=True):
     """An image, how it is sampled, and with which texture coordinates."""
 
     image: EncodedImage
@@ -44,8 +43,7 @@ class Texture:
     transform: TextureTransform | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Material:
+class Material(Struct, frozen=True, eq=False):
     """A metallic-roughness material of glTF 2.0.
 
     Factors are linear Rec.709; ``emissive_factor`` already holds the

@@ -4,7 +4,8 @@ Source: glTF 2.0 specification, section 3.10 (cameras).
 """
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from moka.model import schema
 from moka.model.source import GltfSource
@@ -12,8 +13,7 @@ from moka.model.source import GltfSource
 __all__ = ["CameraDescription", "Orthographic", "Perspective", "read_cameras"]
 
 
-@dataclass(frozen=True, slots=True)
-class Perspective:
+class Perspective(Struct, frozen=True):
     """A perspective projection.
 
     ``yfov`` is the whole vertical angle in radians, ``aspect`` width by
@@ -27,8 +27,7 @@ class Perspective:
     far: float = math.inf
 
 
-@dataclass(frozen=True, slots=True)
-class Orthographic:
+class Orthographic(Struct, frozen=True):
     """A parallel projection.
 
     ``xmag`` and ``ymag`` are half the width and the height of what is seen,
@@ -41,8 +40,7 @@ class Orthographic:
     far: float
 
 
-@dataclass(frozen=True, slots=True)
-class CameraDescription:
+class CameraDescription(Struct, frozen=True):
     """A named projection; a node places it, looking down its -Z axis."""
 
     projection: Perspective | Orthographic

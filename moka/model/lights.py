@@ -5,12 +5,12 @@ spots shine down its -Z axis.
 """
 
 import math
-from dataclasses import dataclass
 from enum import Enum
 from typing import Literal
 
 import msgspec
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.model.schema import Vector3, read_extension
@@ -29,8 +29,7 @@ class LightKind(Enum):
     SPOT = "spot"
 
 
-@dataclass(frozen=True, slots=True)
-class PunctualLight:
+class PunctualLight(Struct, frozen=True):
     """A light without extent.
 
     ``colour`` is linear Rec.709, ``intensity`` in candela for points and

@@ -1,9 +1,9 @@
 """Meshes: primitives with their vertex attributes as NumPy arrays."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import ArrayLike, NDArray
 
 from moka.commands.descriptors import Topology
@@ -137,8 +137,7 @@ class Primitive:
         self.indices = None
 
 
-@dataclass(slots=True, eq=False)
-class Mesh:
+class Mesh(Struct, eq=False):
     """Primitives that nodes place together.
 
     ``weights`` are the default weights of morph targets.
@@ -146,7 +145,7 @@ class Mesh:
 
     name: str
     primitives: list[Primitive]
-    weights: list[float] = field(default_factory=list)
+    weights: list[float] = []
 
 
 def _bounds(positions: NDArray[np.float32]) -> Bounds:

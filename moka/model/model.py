@@ -1,9 +1,9 @@
 """A model: what a glTF file says, on the CPU."""
 
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.errors import ModelError
@@ -19,8 +19,7 @@ __all__ = ["Model"]
 Placements = tuple[NDArray[np.int32], NDArray[np.int32]]
 
 
-@dataclass(slots=True, eq=False)
-class Model:
+class Model(Struct, eq=False):
     """Meshes, materials, cameras and lights, and the nodes that place them.
 
     ``scenes`` are lists of rows of root nodes in ``nodes``; a file without
@@ -42,7 +41,7 @@ class Model:
     path: Path | None = None
     extensions: tuple[str, ...] = ()
     unsupported_extensions: tuple[str, ...] = ()
-    omitted: dict[str, int] = field(default_factory=dict)
+    omitted: dict[str, int] = {}
 
     def instances(self, scene: int | None = None) -> Placements:
         """Rows of nodes that show a mesh, and the indices of their meshes.

@@ -6,10 +6,10 @@ tree of depth d takes log2(d) rounds of whole-array operations, whatever its
 shape (Hillis and Steele 1986, "Data Parallel Algorithms").
 """
 
-from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.maths import Array, compose
@@ -24,8 +24,7 @@ Indices = NDArray[np.int32]
 _LARGEST = float(np.finfo(np.float32).max)
 
 
-@dataclass(slots=True, eq=False)
-class NodeTree:
+class NodeTree(Struct, eq=False):
     """N nodes, ordered so that parents come before their children.
 
     ``parents`` is the row of the parent, -1 for roots; ``local`` float64

@@ -8,10 +8,10 @@ uploaded.
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import (
@@ -39,16 +39,14 @@ _ATTRIBUTES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class _Key:
+class _Key(Struct, frozen=True):
     """A primitive and the attributes of it that are uploaded."""
 
     primitive: Primitive
     wanted: tuple[str, ...]
 
 
-@dataclass(slots=True)
-class _Upload:
+class _Upload(Struct):
     """Meshes that share buffers, and how many of them are in use."""
 
     meshes: dict[_Key, Handle]

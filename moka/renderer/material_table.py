@@ -4,9 +4,9 @@ Materials with texture transforms have longer rows and pages of their own.
 """
 
 from collections.abc import Collection, Hashable
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from moka.commands.descriptors import BufferDescriptor, BufferUsage
 from moka.commands.handles import Handle
@@ -18,8 +18,7 @@ from moka.renderer.permutation import materials_layout
 __all__ = ["MaterialPlace", "MaterialTable"]
 
 
-@dataclass(frozen=True, slots=True)
-class MaterialPlace:
+class MaterialPlace(Struct, frozen=True):
     """The page that holds a material, and its row there."""
 
     page: Handle

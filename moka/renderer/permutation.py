@@ -1,6 +1,6 @@
 """Which program draws a material under the lighting of a frame."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from moka.commands.descriptors import ProgramDescriptor
 from moka.graphics.shader_source import load_shader
@@ -79,8 +79,7 @@ def materials_layout(*, has_transforms: bool) -> UniformLayout:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class LightingDescription:
+class LightingDescription(Struct, frozen=True):
     """What lights a frame, as far as it changes the shader's text.
 
     With ``harmonics`` irradiance comes from nine coefficients, not a cube.
@@ -134,8 +133,7 @@ class LightingDescription:
         return approximates or (lit and self.multiscatter)
 
 
-@dataclass(frozen=True, slots=True)
-class Permutation:
+class Permutation(Struct, frozen=True):
     """Key of the table of loaded surface programs."""
 
     material: MaterialDescription

@@ -5,9 +5,9 @@ frame is array operations over the rows that are made here.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from moka.commands.descriptors import (
     BindGroupDescriptor,
@@ -141,8 +141,7 @@ class SceneMaterials:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class SharedBindings:
+class SharedBindings(Struct, frozen=True):
     """What every surface's bind group holds besides its own."""
 
     frame: Handle

@@ -4,7 +4,7 @@ Draws go into a linear float target, multisampled or not; samples are
 averaged there, in linear radiance; tone mapping comes last and once.
 """
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from moka.commands.descriptors import (
     Attachment,
@@ -18,8 +18,7 @@ from moka.graphics.device import GraphicsDevice
 __all__ = ["Targets", "make_targets"]
 
 
-@dataclass(frozen=True, slots=True)
-class Targets:
+class Targets(Struct, frozen=True):
     """The framebuffers of one size, sample count and float output.
 
     ``scene`` is drawn into, ``resolved`` holds one radiance per pixel (the

@@ -8,10 +8,10 @@ the render thread only copies.
 import os
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import (
@@ -49,8 +49,7 @@ _PADDED = {
 COLOUR_SLOTS = frozenset({"base_colour", "emissive"})
 
 
-@dataclass(frozen=True, slots=True)
-class TextureRequest:
+class TextureRequest(Struct, frozen=True):
     """An image and how the GPU is to hold it.
 
     ``occlusion`` is the identity of another image whose red channel takes

@@ -5,9 +5,10 @@ precision, so that a scene a million metres from zero keeps its detail.
 """
 
 import math
-from dataclasses import dataclass, replace
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from moka.core.maths import Array
 from moka.model.cameras import Perspective
@@ -22,8 +23,7 @@ _DEPTH_RATIO = 2.0**64
 _FARTHEST = float(np.finfo(np.float32).max)
 
 
-@dataclass(frozen=True, slots=True)
-class View:
+class View(Struct, frozen=True):
     """Camera matrices of one frame, float64, [row, column].
 
     ``position`` is the camera in the world, ``matrix`` world to camera,

@@ -5,9 +5,9 @@ with the picture, and a camera keeps its vertical angle or height.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import ArrayLike
 
 from moka.core import projection as projections

@@ -2,7 +2,8 @@
 
 import math
 import re
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from moka.core.errors import OptionError
 from moka.scene.camera import Camera
@@ -11,8 +12,7 @@ from moka.scene.scene import Scene
 __all__ = ["CameraChoice", "Orbit", "choose_camera", "parse_camera"]
 
 
-@dataclass(frozen=True, slots=True)
-class Orbit:
+class Orbit(Struct, frozen=True):
     """A view of the whole scene from around it; see :meth:`Camera.frame`.
 
     ``yaw`` and ``pitch`` in radians, ``distance`` from the centre in metres

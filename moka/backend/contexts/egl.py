@@ -10,9 +10,10 @@ the driver takes tens of milliseconds in which other threads can decode.
 
 import ctypes
 from ctypes import POINTER, byref, c_char_p, c_int, c_uint, c_void_p
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
+
+from msgspec import Struct
 
 from moka.backend.contexts.native import NativeContext, bind, load_library
 from moka.core.errors import ContextError
@@ -138,8 +139,7 @@ def _library() -> _Library:
     return _Library()
 
 
-@dataclass(frozen=True, slots=True)
-class EglDevice:
+class EglDevice(Struct, frozen=True):
     """A device that EGL can draw with.
 
     ``index`` is its place in the order in which the drivers list them,

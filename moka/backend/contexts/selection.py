@@ -2,8 +2,9 @@
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
+
+from msgspec import Struct
 
 from moka.backend.contexts.context import GraphicsContext
 from moka.backend.contexts.native import NativeContext
@@ -31,8 +32,7 @@ _MACOS_HINTS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
+class Candidate(Struct, frozen=True):
     """A way to a context that has not been tried yet.
 
     ``create`` takes whether a debug context is wanted and raises
