@@ -74,10 +74,12 @@ def _basis(directions: NDArray[Any]) -> Array:
 
 def _blocks(pixels: NDArray[np.float32], most: int) -> tuple[Array, Array]:
     """Directions (N, 3) and flux (N, 3) of blocks in up to ``most`` rows."""
-    # Texels of a small map are blocks already, and too large.
-    pixels = pixels.repeat(-(-most // len(pixels)), axis=0)
-    pixels = pixels.repeat(-(-2 * most // pixels.shape[1]), axis=1)
     height, width, _ = pixels.shape
+    if height < most:
+        # Texels of a small map are blocks already, and too large.
+        pixels = pixels.repeat(-(-most // height), axis=0)
+        pixels = pixels.repeat(-(-2 * most // width), axis=1)
+        height, width, _ = pixels.shape
     areas = solid_angles(height, width)[:, 0].astype(np.float32)
     rows = np.linspace(0, height, most + 1).astype(np.intp)
     columns = np.linspace(0, width, 2 * most + 1).astype(np.intp)
