@@ -18,7 +18,9 @@ class ProcessRun:
     """What one process took; None where the system does not tell.
 
     ``cpu_ms`` is user and system time, ``peak_rss_mb`` the largest resident
-    set in MiB, both of the process and of those that it waited for.
+    set in MiB, both of the process and of those that it waited for. Linux
+    counts what this process held when it started the other, so that the peak
+    is never below that.
     """
 
     wall_ms: float

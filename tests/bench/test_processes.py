@@ -1,5 +1,6 @@
 """Processes in turn: what is measured and what a failure says."""
 
+import os
 import sys
 
 import pytest
@@ -14,11 +15,11 @@ def test_a_process_is_measured_and_gets_its_environment() -> None:
     )
     run = run_process([sys.executable, "-c", script], {"FRUIT": "plum"})
     assert run.wall_ms > 1
-    if hasattr(__import__("os"), "wait4"):
+    if hasattr(os, "wait4"):
         assert run.cpu_ms is not None
         assert run.peak_rss_mb is not None
         assert run.cpu_ms > 1
-        assert 2 < run.peak_rss_mb < 200
+        assert run.peak_rss_mb > 2
 
 
 def test_a_failure_says_its_last_line() -> None:
