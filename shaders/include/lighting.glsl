@@ -217,7 +217,11 @@ vec3 punctual_light(Surface surface) {
             ? sun_alpha(surface.roughness, light.angular_radius)
             : alpha_from_roughness(surface.roughness);
         float lobe = specular_lobe(angles, alpha, k);
-        if (is_sun) lobe *= sun_weight(surface.roughness);
+        if (is_sun) {
+            lobe *= sun_weight(surface.roughness);
+            // Occluded like the rest of the environment that it is part of.
+            attenuation *= surface.occlusion;
+        }
         vec3 reflected = fresnel * scale * lobe
             + share * diffuse_brdf(
                 angles, surface.diffuse_colour, surface.roughness);

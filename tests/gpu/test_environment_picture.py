@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment, Sun
-from moka.material.material import Material
+from moka.material.material import Material, Texture
 from moka.model.geometry import quad, sphere
 from tests.support.pictures import (
     draw_radiance,
     draw_with_display,
+    encoded,
     looking,
     scene_of,
     square_camera,
@@ -216,3 +217,25 @@ def test_a_sun_lights_as_a_directional_light_and_turns_with_the_sky(
     specular = 0.04 / (4 * math.pi)
     expected = (lambert + specular) * np.array([3, 2, 1])
     assert facing == pytest.approx(expected, rel=5e-3)
+
+
+def test_a_sun_is_occluded_like_the_rest_of_its_environment(
+    egl_device: GraphicsDevice,
+) -> None:
+    """So that a map looks alike with its sun in it and taken out."""
+    half = np.full((1, 1, 3), 128, np.uint8)
+    sun = Sun((0.0, 0.0, 1.0), (3.0, 3.0, 3.0))
+    shades = []
+    for strength in (0.0, 1.0):
+        material = Material(
+            metallic_factor=0.0,
+            occlusion_texture=Texture(encoded(half)),
+            occlusion_strength=strength,
+        )
+        scene = scene_of(
+            [(quad(2.0), material, np.eye(4))],
+            Environment(np.zeros((1, 1, 3), np.float32), (sun,)),
+        )
+        picture = draw_radiance(egl_device, scene, square_camera())
+        shades.append(float(picture[16, 16, 0]))
+    assert shades[1] == pytest.approx(shades[0] * 128 / 255, rel=1e-3)
