@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from moka.core.errors import OptionError
 from moka.core.image import Image
 from moka.core.statistics import Statistics
+from moka.renderer.quality import settings_of_quality
 from moka.renderer.settings import RenderSettings
 
 if TYPE_CHECKING:
@@ -67,10 +68,11 @@ def render(
     brdf: str = "gltf",
     diffuse: str = "lambert",
     multiscatter: bool = True,
-    suns: str | int = "auto",
-    irradiance: str = "auto",
-    ibl: str = "split-sum",
-    ibl_samples: int = 16,
+    quality: str = "balanced",
+    suns: str | int | None = None,
+    irradiance: str | None = None,
+    ibl: str | None = None,
+    ibl_samples: int | None = None,
     reference_samples: int | None = None,
     max_error: float | None = None,
     backend: str = "auto",
@@ -92,7 +94,9 @@ def render(
     mapped. ``brdf`` is ``gltf`` (glTF 2.0 appendix B), ``karis`` or
     ``blinn-phong``, ``diffuse`` ``lambert``, ``oren-nayar`` or ``burley``;
     ``multiscatter`` compensates the energy that single scattering loses
-    (Turquin 2019). ``suns`` is how many bright, compact parts of the
+    (Turquin 2019). ``quality`` is ``fast``, ``balanced`` or ``best``: how the
+    environment lights, of which the next four change what is not None.
+    ``suns`` is how many bright, compact parts of the
     environment are lit as lights with the exact BRDF: ``auto``, ``off`` or
     a number at most. ``irradiance`` is ``sh`` (nine spherical harmonics,
     Ramamoorthi and Hanrahan 2001), ``cube``, or ``auto``, which decides by
@@ -109,7 +113,8 @@ def render(
     Raises ModelError, EnvironmentMapError, ImageFileError, OptionError or
     ContextError, each with one line that names the file and the fault.
     """
-    settings = RenderSettings(
+    settings = settings_of_quality(
+        quality,
         exposure=exposure,
         tone_map=tone_map,
         samples=samples,

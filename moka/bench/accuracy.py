@@ -19,7 +19,7 @@ _QUICK_ROUGHNESSES = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 _QUICK_SUBSTANCES = ("black dielectric", "clay", "gold")
 
 # diameter of a sphere in pixels, samples of the truth, rounds of times
-_THOROUGH = (40, 16384, 15)
+_THOROUGH = (32, 8192, 15)
 _QUICK = (20, 2048, 7)
 
 

@@ -148,10 +148,9 @@ class LightingBench:
         picture = radiance.data[::-1]
         # Of what is covered; samples between facets count for nothing.
         coverage = picture[:, :, 3:]
-        whole: NDArray[np.float32] = picture / np.where(
-            coverage > 0.0, coverage, np.float32(1)
-        )
-        return whole
+        whole = np.where(coverage > 0.0, coverage, np.float32(1))
+        covered: NDArray[np.float32] = np.divide(picture, whole)
+        return covered
 
     def _frame(self, renderer: Renderer) -> float:
         """Draw a frame of the smooth spheres; how many milliseconds."""

@@ -114,24 +114,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="lambert, oren-nayar, burley (default: lambert)",
     )
     add(
+        "--quality",
+        metavar="NAME",
+        help="fast, balanced, best: the light of the environment as a named "
+        "point of the chart of error against time; the options below change "
+        "it (default: balanced)",
+    )
+    add(
         "--suns",
         metavar="N",
         type=_suns,
-        default="auto",
         help="bright compact parts of the environment lit as lights: auto, "
         "off or how many at most (default: auto)",
     )
     add(
         "--irradiance",
         metavar="HOW",
-        default="auto",
         help="diffuse light from spherical harmonics (sh) or a cube, or "
         "auto, which decides by their error (default: auto)",
     )
     add(
         "--ibl",
         metavar="MODE",
-        default="split-sum",
         help="light of the environment: split-sum, filtered, reference "
         "(default: split-sum)",
     )
@@ -139,7 +143,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--ibl-samples",
         metavar="N",
         type=_count,
-        help="samples a pixel of --ibl filtered (default: 16)",
+        help="samples a pixel of --ibl filtered (default: 16, with --quality "
+        "best 32)",
     )
     add(
         "--reference-samples",
@@ -215,11 +220,27 @@ def _request(
     arguments: argparse.Namespace, outputs: list[Path]
 ) -> "RenderRequest":
     from moka.app.render import RenderRequest
-    from moka.renderer.settings import DEFAULT_IBL_SAMPLES, RenderSettings
+    from moka.renderer.quality import settings_of_quality
 
     if arguments.environment_intensity < 0:
         raise OptionError("--environment-intensity: must not be negative")
-    _check_lighting(arguments)
+    settings = settings_of_quality(
+        arguments.quality,
+        exposure=arguments.exposure,
+        tone_map=arguments.tone_map,
+        samples=arguments.samples,
+        brdf=arguments.brdf,
+        diffuse=arguments.diffuse,
+        multiscatter=arguments.multiscatter == "on",
+        suns=arguments.suns,
+        irradiance=arguments.irradiance,
+        ibl=arguments.ibl,
+        ibl_samples=arguments.ibl_samples,
+        reference_samples=arguments.reference_samples,
+        max_error=arguments.max_error,
+        float_output=any(path.suffix.lower() == ".exr" for path in outputs),
+    )
+    _check_lighting(arguments, settings.ibl)
     return RenderRequest(
         source=arguments.model,
         environment=arguments.environment,
@@ -228,38 +249,24 @@ def _request(
         background=arguments.background,
         camera=arguments.camera,
         size=arguments.size,
-        settings=RenderSettings(
-            exposure=arguments.exposure,
-            tone_map=arguments.tone_map,
-            samples=arguments.samples,
-            brdf=arguments.brdf,
-            diffuse=arguments.diffuse,
-            multiscatter=arguments.multiscatter == "on",
-            suns=arguments.suns,
-            irradiance=arguments.irradiance,
-            ibl=arguments.ibl,
-            ibl_samples=arguments.ibl_samples or DEFAULT_IBL_SAMPLES,
-            reference_samples=arguments.reference_samples,
-            max_error=arguments.max_error,
-            float_output=any(path.suffix.lower() == ".exr" for path in outputs),
-        ),
+        settings=settings,
         backend=arguments.backend,
     )
 
 
-def _check_lighting(arguments: argparse.Namespace) -> None:
-    """Refuse options that the mode of lighting would not look at."""
+def _check_lighting(arguments: argparse.Namespace, ibl: str) -> None:
+    """Refuse options that ``ibl``, the mode of lighting, does not look at."""
     for name, mode in (
         ("ibl_samples", "filtered"),
         ("reference_samples", "reference"),
         ("max_error", "reference"),
     ):
-        if getattr(arguments, name) is not None and arguments.ibl != mode:
+        if getattr(arguments, name) is not None and ibl != mode:
             option = name.replace("_", "-")
             raise OptionError(f"--{option}: needs --ibl {mode}")
-    if arguments.ibl == "reference":
+    if ibl == "reference":
         for option in ("suns", "irradiance"):
-            if getattr(arguments, option) != "auto":
+            if getattr(arguments, option) not in (None, "auto"):
                 raise OptionError(
                     f"--{option}: --ibl reference samples the environment "
                     "as it is; leave it out"
