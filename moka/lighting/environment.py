@@ -20,13 +20,17 @@ from numpy.typing import NDArray
 
 from moka.core.errors import EnvironmentMapError, ImageFileError
 
-__all__ = ["Environment", "Sun", "load_environment"]
+__all__ = ["BRIGHTEST", "Environment", "Sun", "load_environment"]
 
 _LOGGER = logging.getLogger(__name__)
 
 #: Infinite radiance is mostly an overflow of half floats, of which this is
 #: the largest.
 _INFINITE = 65504.0
+
+#: The largest radiance of a texel: sums over all texels of a large map are
+#: still finite in float32. A Radiance file can hold more, for no light.
+BRIGHTEST = 1e30
 
 BUILT_IN = ("studio", "sky", "furnace", "none")
 
@@ -57,8 +61,9 @@ class Environment:
     linear Rec.709, laid out as :mod:`moka.lighting.equirectangular` says;
     or one texel (1, 1, 3) for all directions. Texels that are no radiance
     are replaced, and reported once through logging: NaN and negative values
-    by 0, infinite ones by 65504. ``suns`` shine in addition to the map.
-    ``name`` stands in messages. Raises EnvironmentMapError for other shapes.
+    by 0, infinite ones by 65504, and those above 1e30 by that. ``suns``
+    shine in addition to the map. ``name`` stands in messages. Raises
+    EnvironmentMapError for other shapes.
     """
 
     pixels: NDArray[np.float32]
@@ -164,16 +169,18 @@ def _read_map(path: Path) -> NDArray[np.float32]:
 
 def _sanitised(pixels: NDArray[np.float32], name: str) -> NDArray[np.float32]:
     # NaN fails both comparisons.
-    if pixels.min() >= 0.0 and pixels.max() < np.inf:
+    if pixels.min() >= 0.0 and pixels.max() <= BRIGHTEST:
         return pixels
-    wrong = (~np.isfinite(pixels) | (pixels < 0.0)).any(axis=2)
+    wrong = ~((pixels >= 0.0) & (pixels <= BRIGHTEST)).all(axis=2)
     _LOGGER.warning(
         "%s: %d of %d texels are no radiance; NaN and negative values are "
-        "taken for 0, infinite ones for %g",
+        "taken for 0, infinite ones for %g, those above %g for that",
         name,
         np.count_nonzero(wrong),
         wrong.size,
         _INFINITE,
+        BRIGHTEST,
     )
     positive = np.fmax(pixels, np.float32(0.0))
-    return np.where(np.isinf(positive), np.float32(_INFINITE), positive)
+    positive[np.isinf(positive)] = _INFINITE
+    return np.minimum(positive, np.float32(BRIGHTEST))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from moka.core.radiance_hdr import parse_radiance_hdr
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
 from moka.material.material import Material
@@ -22,6 +23,7 @@ from tests.support.oracles.environment import (
 )
 from tests.support.pictures import (
     draw_radiance,
+    draw_with_display,
     looking,
     placed_at,
     scene_of,
@@ -60,6 +62,8 @@ def black_but_for(value: float) -> Pixels:
 MAPS = {
     "a texel of 1e9": with_texel(1e9),
     "a texel of 1e30": with_texel(1e30),
+    "a texel of 3e38": with_texel(3e38),
+    "nothing but 3e38": np.full((16, 32, 3), 3e38, np.float32),
     "nothing but 1e-30": np.full((16, 32, 3), 1e-30, np.float32),
     "nothing but 1e-45": np.full((16, 32, 3), 1e-45, np.float32),
     "black": np.zeros((16, 32, 3), np.float32),
@@ -69,6 +73,7 @@ MAPS = {
     "two texels": noise(1),
     "two texels, one hot": np.array([[[1e9] * 3, [0.5] * 3]], np.float32),
     "one texel": np.full((1, 1, 3), 0.7, np.float32),
+    "one hot texel": np.full((1, 1, 3), 3e38, np.float32),
     "an odd height": noise(7),
 }
 
@@ -120,7 +125,7 @@ def test_texels_that_are_no_radiance_are_taken_for_some(
 ) -> None:
     broken, mended = noise(), noise()
     for place, (value, instead) in enumerate(
-        [(np.nan, 0), (np.inf, 65504), (-np.inf, 0), (-3, 0)]
+        [(np.nan, 0), (np.inf, 65504), (-np.inf, 0), (-3, 0), (3e38, 1e30)]
     ):
         broken[3 + place, 4 * place], mended[3 + place, 4 * place] = (
             value,
@@ -194,6 +199,44 @@ def test_a_black_map_is_dark(egl_device: GraphicsDevice) -> None:
         )
         assert not picture[..., :3].any()
         assert (picture[..., 3] == 1.0).all()
+
+
+def test_every_exponent_of_a_radiance_file(egl_device: GraphicsDevice) -> None:
+    """The sky shows mantissa * 2^(e - 136), from underflow to 1e30."""
+    height, width = 128, 256
+    codes = np.zeros((height, width, 4), np.uint8)
+    codes[..., :3] = (255, 128, 1)
+    codes[..., 3] = np.arange(width)
+    header = f"#?RADIANCE\n\n-Y {height} +X {width}\n".encode()
+    pixels = parse_radiance_hdr(header + codes.tobytes(), "every exponent")
+    exponent = np.arange(width) - 136.0
+    expected = np.array([255, 128, 1]) * 2.0 ** exponent[:, None]
+    expected[0] = 0.0  # the format's black
+    assert np.isfinite(pixels).all()
+    # Some readers add half a step to a mantissa; a step is what we allow.
+    step = 2.0 ** exponent[:, None]
+    tiny = float(np.finfo(np.float32).tiny)
+    assert (np.abs(pixels[0] - expected) <= np.maximum(step, tiny)).all()
+    environment = Environment(pixels)
+    scene = scene_of([], environment)
+    # Not the first, beside which the last lies.
+    for column in (1, 20, 100, 128, 136, 180, 235, 255):
+        azimuth = ((column + 0.5) / width - 0.5) * 2 * math.pi
+        towards = (math.cos(azimuth), 0.0, math.sin(azimuth))
+        camera = looking(towards, math.radians(0.01))
+        picture, display = draw_with_display(egl_device, scene, camera, (2, 2))
+        shown = np.minimum(pixels[0, column], 1e30)
+        # Between the texel and its neighbour, which may be twice as bright.
+        assert np.allclose(picture[0, 0, :3], shown, rtol=0.05, atol=tiny)
+        assert (picture >= 0.0).all()
+        if column > 150:
+            assert (display[..., :3] > 250).all()
+    for mode in MODES.values():
+        picture = draw_radiance(
+            egl_device, balls(environment), square_camera(), (32, 32), **mode
+        )
+        assert np.isfinite(picture).all()
+        assert (picture >= 0.0).all()
 
 
 def test_a_map_of_eight_thousand_texels(
