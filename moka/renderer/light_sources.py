@@ -17,7 +17,7 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.lighting.disk_cache import DiskCache
-from moka.lighting.environment import Environment, Sun
+from moka.lighting.environment import BRIGHTEST, Environment, Sun
 from moka.lighting.environment_lighting import (
     EnvironmentLighting,
     LightingRequest,
@@ -218,9 +218,8 @@ def _sun_rows(scene: Scene, suns: tuple[Sun, ...]) -> NDArray[np.void]:
     world_from_environment = turn_matrix(scene.environment_rotation).T
     for row, sun in zip(rows, suns, strict=True):
         row["direction"] = -(world_from_environment @ sun.direction)
-        row["intensity"] = scene.environment_intensity * np.asarray(
-            sun.irradiance
-        )
+        irradiance = np.array(sun.irradiance) * scene.environment_intensity
+        row["intensity"] = np.minimum(irradiance, BRIGHTEST)
         row["angle_offset"] = 1.0
         # Above 0, by which the shader knows a sun: it is in the map as well.
         row["angular_radius"] = max(sun.angular_radius, 1e-6)

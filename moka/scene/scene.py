@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from moka.core.errors import OptionError
 from moka.core.maths import Array
+from moka.lighting.environment import BRIGHTEST
 from moka.model.lights import PunctualLight
 from moka.model.model import Model
 from moka.scene.background import Background, parse_background
@@ -33,7 +34,7 @@ class Scene:
 
     ``environment`` is an :class:`moka.Environment` or None for darkness,
     turned by ``environment_rotation`` radians about +Y (counter-clockwise
-    seen from above) and multiplied by ``environment_intensity``.
+    seen from above).
 
     For the renderer, as of the last :meth:`update`: ``transforms`` with its
     own ``version``, ``drawables`` which are new when ``structure_version``
@@ -44,7 +45,7 @@ class Scene:
     def __init__(self) -> None:
         self.environment: Any = None
         self.environment_rotation = 0.0
-        self.environment_intensity = 1.0
+        self._environment_intensity = 1.0
         self.transforms = TransformTree(fixed=True)
         self.drawables = Drawables()
         self.shown: NDArray[np.bool_] = np.zeros(0, np.bool_)
@@ -72,6 +73,23 @@ class Scene:
     @background.setter
     def background(self, value: Any) -> None:
         self._background = parse_background(value)
+
+    @property
+    def environment_intensity(self) -> float:
+        """What the environment's radiance is multiplied by.
+
+        Raises OptionError for what is not between 0 and 1e30.
+        """
+        return self._environment_intensity
+
+    @environment_intensity.setter
+    def environment_intensity(self, value: float) -> None:
+        if not 0.0 <= value <= BRIGHTEST:
+            raise OptionError(
+                f"scene: an environment_intensity of {value} is not between "
+                f"0 and {BRIGHTEST:g}"
+            )
+        self._environment_intensity = value
 
     @property
     def models(self) -> list[SceneModel]:

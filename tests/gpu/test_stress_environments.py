@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from moka.core.errors import OptionError
 from moka.core.radiance_hdr import parse_radiance_hdr
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
@@ -237,6 +238,28 @@ def test_every_exponent_of_a_radiance_file(egl_device: GraphicsDevice) -> None:
         )
         assert np.isfinite(picture).all()
         assert (picture >= 0.0).all()
+
+
+@pytest.mark.parametrize("intensity", [0.0, 1e-30, 1e30])
+@pytest.mark.parametrize("mode", MODES.values(), ids=MODES.keys())
+def test_any_intensity(
+    egl_device: GraphicsDevice, intensity: float, mode: dict
+) -> None:
+    hot = np.full((128, 256, 3), 1e20, np.float32)
+    hot[40, 100] = 1e30
+    scene = balls(Environment(hot))
+    scene.environment_intensity = intensity
+    picture = draw_radiance(
+        egl_device, scene, square_camera(), (32, 32), **mode
+    )
+    assert np.isfinite(picture).all()
+    assert (picture >= 0.0).all()
+
+
+@pytest.mark.parametrize("intensity", [-1.0, math.nan, math.inf, 1e31])
+def test_an_intensity_that_is_none_is_refused(intensity: float) -> None:
+    with pytest.raises(OptionError, match="environment_intensity"):
+        Scene().environment_intensity = intensity
 
 
 def test_a_map_of_eight_thousand_texels(
