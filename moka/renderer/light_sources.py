@@ -155,7 +155,7 @@ class LightSources:
         height, width, _ = table.shape
         texture = self._device.create_texture(
             TextureDescriptor(
-                PixelFormat.RGBA32F, width, height, label="importance table"
+                PixelFormat.RGB32F, width, height, label="importance table"
             ),
             [table],
         )

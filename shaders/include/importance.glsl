@@ -3,16 +3,16 @@
 
 #include "include/environment.glsl"
 
-// Per cell of the map: x probability to stay, yz the cell to go to
-// otherwise, w density over texture coordinates at its centre. Linear
-// filtering, repeating in u and clamped in v: the density in between is
-// interpolated like the map.
+// Per cell of the map: x probability of the cells up to it in its row, y of
+// the rows up to its own, z density over texture coordinates at its centre.
+// Linear filtering, repeating in u and clamped in v: the density in between
+// is interpolated like the map.
 uniform sampler2D importance_table;
 
 // Density over texture coordinates to density per steradian. The sine is
 // that of the polar angle; at a pole the density has no bound.
 float density_per_steradian(vec2 place, float sine) {
-    float density = textureLod(importance_table, place, 0.0).w;
+    float density = textureLod(importance_table, place, 0.0).z;
     return density / (2.0 * PI * PI * max(sine, 1e-6));
 }
 
@@ -32,17 +32,48 @@ vec2 sample_tent(vec2 point) {
         lessThan(twice, vec2(1.0)));
 }
 
-// A direction of the environment's own space, w its density. The alias
-// method (Walker 1977): ``point`` picks a cell, ``choice`` whether to stay;
-// what is left of ``point`` places the direction around the cell's centre.
-vec4 sample_environment(vec2 point, float choice) {
-    vec2 cells = vec2(textureSize(importance_table, 0));
-    vec2 place = point * cells;
-    vec2 cell = min(floor(place), cells - 1.0);
-    vec2 within = place - cell;
-    vec4 entry = texelFetch(importance_table, ivec2(cell), 0);
-    if (choice >= entry.x) cell = entry.yz;
-    vec2 uv = (cell + 0.5 + sample_tent(within)) / cells;
+// The first row up to which the probability is above ``u``, and how far
+// between the sums ``u`` is, 0 to 1.
+float find_row(float u, int rows, out int row) {
+    row = 0;
+    for (int end = rows - 1; row < end;) {
+        int middle = (row + end) / 2;
+        if (texelFetch(importance_table, ivec2(0, middle), 0).y > u)
+            end = middle;
+        else
+            row = middle + 1;
+    }
+    float before = row > 0
+        ? texelFetch(importance_table, ivec2(0, row - 1), 0).y : 0.0;
+    float after = texelFetch(importance_table, ivec2(0, row), 0).y;
+    return (u - before) / max(after - before, 1e-30);
+}
+
+// The same for the cells of a row.
+float find_cell(float u, int cells, int row, out int cell) {
+    cell = 0;
+    for (int end = cells - 1; cell < end;) {
+        int middle = (cell + end) / 2;
+        if (texelFetch(importance_table, ivec2(middle, row), 0).x > u)
+            end = middle;
+        else
+            cell = middle + 1;
+    }
+    float before = cell > 0
+        ? texelFetch(importance_table, ivec2(cell - 1, row), 0).x : 0.0;
+    float after = texelFetch(importance_table, ivec2(cell, row), 0).x;
+    return (u - before) / max(after - before, 1e-30);
+}
+
+// A direction of the environment's own space, w its density, for a point of
+// the unit square.
+vec4 sample_environment(vec2 point) {
+    ivec2 cells = textureSize(importance_table, 0);
+    ivec2 cell;
+    vec2 within;
+    within.y = find_row(point.y, cells.y, cell.y);
+    within.x = find_cell(point.x, cells.x, cell.y, cell.x);
+    vec2 uv = (vec2(cell) + 0.5 + sample_tent(within)) / vec2(cells);
     // Beyond a pole the tent comes back, as clamped texels have it.
     uv.y = abs(uv.y);
     uv.y = min(uv.y, 2.0 - uv.y);

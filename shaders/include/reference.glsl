@@ -112,7 +112,7 @@ vec3 environment_light(Surface surface) {
     if (!s.is_mirror || s.has_base) {
         uvec4 pixel = uvec4(gl_FragCoord.xy, uint(sample_range.z), 0u);
         uvec4 start = hash(pixel);
-        uvec4 start_of_light = hash(pixel + uvec4(0u, 0u, 0u, 1u));
+        uvec2 start_of_light = hash(pixel + uvec4(0u, 0u, 0u, 1u)).xy;
         for (int i = 0; i < sample_range.y; ++i) {
             uint index = uint(sample_range.x + i);
             if (!s.is_mirror) {
@@ -123,8 +123,8 @@ vec3 environment_light(Surface surface) {
                 light += sample_light(surface, s, sample_cosine_hemisphere(
                     sequence(index, start.zw)));
             }
-            vec3 point = sequence(index, start_of_light.xyz);
-            vec4 direction = sample_environment(point.xy, point.z);
+            vec4 direction =
+                sample_environment(sequence(index, start_of_light));
             light += sample_light(
                 surface, s, direction.xyz * s.environment_axes,
                 direction.xyz, direction.w);

@@ -20,15 +20,8 @@ uvec4 hash(uvec4 v) {
     return v;
 }
 
-// 0 to 1, without 1: a float holds 24 bits.
-vec2 unit_point(uvec2 bits) { return vec2(bits >> 8u) / 16777216.0; }
-vec3 unit_point(uvec3 bits) { return vec3(bits >> 8u) / 16777216.0; }
-
+// Points of the unit square, without 1: a float holds 24 bits.
 vec2 sequence(uint index, uvec2 start) {
-    return unit_point(index * uvec2(0xC13FA9A9u, 0x91E10DA6u) + start);
-}
-
-vec3 sequence(uint index, uvec3 start) {
-    return unit_point(
-        index * uvec3(0xD1B54A33u, 0xABC98389u, 0x8CB92BA7u) + start);
+    uvec2 bits = index * uvec2(0xC13FA9A9u, 0x91E10DA6u) + start;
+    return vec2(bits >> 8u) / 16777216.0;
 }
