@@ -134,6 +134,12 @@ def _measure(
         float_output=True,
     )
     modes = lighting_modes(base, quick=arguments.quick)
+    most = max(mode.samples for mode in modes)
+    if samples < 2 * most:
+        raise OptionError(
+            f"--truth-samples: {samples} are no truth for a mode of {most}; "
+            f"take at least {2 * most}"
+        )
     results = []
     with GraphicsDevice.open(
         arguments.backend, debug=arguments.debug

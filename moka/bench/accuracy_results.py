@@ -47,15 +47,8 @@ class UnderEnvironment:
         Taken from the reference mode with the most samples, whose error
         falls at least like one over the square root of their number.
         """
-        last = max(
-            (
-                each
-                for each in self.measurements
-                if each.mode.family == "reference"
-            ),
-            key=lambda each: each.mode.settings.sample_budget,
-        )
-        ratio = last.mode.settings.sample_budget / self.truth_samples
+        last = max(self.measurements, key=lambda each: each.mode.samples)
+        ratio = last.mode.samples / self.truth_samples
         return last.errors.relative_rmse * math.sqrt(ratio)
 
 

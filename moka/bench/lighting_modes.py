@@ -35,11 +35,16 @@ class LightingMode:
         return self.name.removeprefix(self.family).lstrip(", ") or "auto"
 
     @property
+    def samples(self) -> int:
+        """Samples a pixel of reference lighting, 0 of other modes."""
+        if self.family != "reference":
+            return 0
+        return self.settings.sample_budget
+
+    @property
     def frames(self) -> int:
         """How many frames one picture takes."""
-        if self.family != "reference":
-            return 1
-        return Schedule.of(self.settings.sample_budget).total_frames
+        return Schedule.of(self.samples).total_frames if self.samples else 1
 
     @property
     def knobs(self) -> dict[str, Any]:
