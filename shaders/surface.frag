@@ -38,7 +38,7 @@ void main() {
     vec3 light = base.rgb;
 #else
     vec3 packed_values = occlusion_roughness_metalness(row);
-    vec3 view = normalize(eye.xyz - surface_position * eye.w);
+    vec3 view = surface_view();
     Surface surface = make_surface(
         base.rgb, packed_values.z, packed_values.y, packed_values.x,
         shading_normal(row), view);

@@ -37,15 +37,12 @@ void main() {
     float handedness = instance_handedness();
     // Normalised here, so that a scaled object interpolates as it would
     // unscaled. A zero normal stays zero; the fragment shader replaces it.
-    vec3 placed = place_normal(normal, handedness);
-    float squared = dot(placed, placed);
-    surface_normal = squared > 0.0 ? placed * inversesqrt(squared) : placed;
+    surface_normal =
+        direction_of(place_normal(direction_of(normal), handedness));
 #endif
 #ifdef MOKA_VERTEX_TANGENT
-    vec3 along = place_direction(tangent.xyz);
-    squared = dot(along, along);
     surface_tangent = vec4(
-        squared > 0.0 ? along * inversesqrt(squared) : along,
+        direction_of(place_direction(direction_of(tangent.xyz))),
         tangent.w * handedness);
 #endif
 #ifdef MOKA_UV_0

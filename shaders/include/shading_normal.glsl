@@ -1,5 +1,7 @@
 // The normal that light meets: interpolated or flat, then normal mapped.
 
+#include "include/direction.glsl"
+
 in vec3 surface_position;
 #ifdef MOKA_VERTEX_NORMAL
 centroid in vec3 surface_normal;
@@ -15,14 +17,19 @@ centroid in vec4 surface_tangent;
 #define FRONT_FACING true
 #endif
 
+// Towards the viewer.
+vec3 surface_view() {
+    return direction_of(eye.xyz - surface_position * eye.w);
+}
+
 // The plane of the triangle itself, towards the viewer: for right-handed
 // window coordinates this is the order of the product.
 vec3 facing_normal() {
-    vec3 n = cross(dFdx(surface_position), dFdy(surface_position));
-    float squared = dot(n, n);
+    vec3 n = direction_of(cross(
+        direction_of(dFdx(surface_position)),
+        direction_of(dFdy(surface_position))));
     // A triangle seen exactly edge on, or a point, has no plane.
-    return squared > 0.0 ? n * inversesqrt(squared)
-                         : normalize(-surface_position + 1e-20);
+    return n == vec3(0.0) ? surface_view() : n;
 }
 
 // The geometric normal on the front side of the surface.
@@ -45,6 +52,14 @@ mat3 cotangent_frame(vec3 n, vec2 uv) {
     vec3 dp2 = dFdy(surface_position);
     vec2 duv1 = dFdx(uv);
     vec2 duv2 = dFdy(uv);
+    // Only ratios matter, while products of what is as small or as large as
+    // it gets would vanish or be infinite.
+    float size = max(largest_component(dp1), largest_component(dp2));
+    dp1 /= max(size, 1e-37);
+    dp2 /= max(size, 1e-37);
+    size = largest_component(vec3(max(abs(duv1), abs(duv2)), 1e-37));
+    duv1 /= size;
+    duv2 /= size;
     // The construction wants n on the side that is seen.
     float side = FRONT_FACING ? 1.0 : -1.0;
     vec3 dp2_perpendicular = cross(dp2, side * n);

@@ -111,6 +111,16 @@ def test_a_normal_that_is_none_becomes_that_of_the_triangle(
     assert flat[12, 12, 3] == 1.0
 
 
+@pytest.mark.parametrize("length", [1e-37, 1e-30, 1e-20, 1e20, 1e30, 1e38])
+def test_a_normal_of_any_length_is_a_direction(
+    egl_device: GraphicsDevice, length: float
+) -> None:
+    tilted = np.array([0.6, 0.0, 0.8])
+    expected = picture_of(egl_device, square_with(NORMAL=tilted))
+    shown = picture_of(egl_device, square_with(NORMAL=length * tilted))
+    assert np.allclose(shown, expected, rtol=1e-4)
+
+
 def test_normals_that_cancel_out_do_not_break_the_middle(
     egl_device: GraphicsDevice,
 ) -> None:
@@ -159,6 +169,17 @@ def test_a_tangent_along_the_normal_is_finite(
             picture_of(egl_device, square_with(TANGENT=tangent), material)
 
 
+@pytest.mark.parametrize("scale", [1e-30, 1e-6, 1e6, 1e30])
+def test_texture_coordinates_of_any_size_bend_normals_alike(
+    egl_device: GraphicsDevice, scale: float
+) -> None:
+    uv = SQUARE.attributes["TEXCOORD_0"] * scale
+    scaled = Primitive({**SQUARE.attributes, "TEXCOORD_0": uv}, SQUARE.indices)
+    expected = picture_of(egl_device, SQUARE, BUMPY)
+    shown = picture_of(egl_device, scaled, BUMPY)
+    assert np.allclose(shown, expected, rtol=2e-3)
+
+
 def test_mirrored_coordinates_with_and_without_tangents_agree(
     egl_device: GraphicsDevice,
 ) -> None:
@@ -203,10 +224,41 @@ def test_a_model_without_materials(egl_device: GraphicsDevice) -> None:
     assert picture[16, 16, 0] > 0.1
 
 
+SCALES = [1e-18, 1e-6, 1e6, 1e17]
+
+
 def camera_at(scale: float) -> Camera:
     camera = Camera(Perspective(0.5, None, 0.1 * scale, 100 * scale))
     camera.transform.translate((0, 0, 5 * scale))
     return camera
+
+
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("has_normals", [True, False])
+@pytest.mark.parametrize("material", [MATTE, BUMPY], ids=["plain", "bumpy"])
+def test_a_thing_of_any_size_looks_the_same(
+    egl_device: GraphicsDevice,
+    scale: float,
+    mirrored: bool,
+    has_normals: bool,
+    material: Material,
+) -> None:
+    ball = sphere(0.9, 16, 8)
+    if not has_normals:
+        ball = Primitive(
+            {k: v for k, v in ball.attributes.items() if k != "NORMAL"},
+            ball.indices,
+        )
+    side = -1.0 if mirrored else 1.0
+
+    def shown(size: float) -> NDArray[np.float32]:
+        matrix = np.diag([side * size, size, size, 1.0])
+        return picture_of(egl_device, ball, material, matrix, camera_at(size))
+
+    difference = np.abs(shown(scale) - shown(1.0))
+    # Single pixels at an edge may fall to the other side.
+    assert np.quantile(difference, 0.99) < 2e-3
 
 
 @pytest.mark.parametrize(
