@@ -61,7 +61,9 @@ class DrawGatherer:
         if self._version != transforms.version:
             self._version = transforms.version
             world = transforms.world[drawables.row, :3]
-            self._instances["transform"] = world
+            # What float32 cannot hold is infinite, and not drawn.
+            with np.errstate(over="ignore"):
+                self._instances["transform"] = world
             self._positions = world[:, :, 3]
         draws = self._draws.take(visible)
         draws["state"] = states[
@@ -72,9 +74,10 @@ class DrawGatherer:
         draws["key"] = self._keys(draws, visible, depth, pass_)
         instances = self._instances.take(visible)
         # In double precision, before anything is rounded.
-        instances["transform"][:, :, 3] = (
-            self._positions[visible] - view.position
-        )
+        with np.errstate(over="ignore", invalid="ignore"):
+            instances["transform"][:, :, 3] = (
+                self._positions[visible] - view.position
+            )
         return draws, instances
 
     def _keys(

@@ -4,12 +4,14 @@ What cannot be meant gets the picture of what it most likely stands for; all
 else looks the same at any scale and anywhere in the world.
 """
 
+import contextlib
 import math
 
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
+from moka.core.errors import MokaError
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
 from moka.material.material import Material, Texture
@@ -19,7 +21,7 @@ from moka.model.lights import LightKind, PunctualLight
 from moka.model.mesh import Primitive
 from moka.model.tangents import with_tangents
 from moka.scene.camera import Camera
-from moka.scene.camera_choice import choose_camera
+from moka.scene.camera_choice import Orbit, choose_camera
 from moka.scene.scene import Scene
 from tests.support.pictures import (
     draw_radiance,
@@ -261,6 +263,16 @@ def test_a_thing_of_any_size_looks_the_same(
     assert np.quantile(difference, 0.99) < 2e-3
 
 
+@pytest.mark.parametrize("mode", MODES.values(), ids=MODES.keys())
+@pytest.mark.parametrize("scale", [1e-30, 1e-20, 1e20, 1e30, 1e38])
+def test_a_thing_of_absurd_size_is_finite(
+    egl_device: GraphicsDevice, scale: float, mode: dict
+) -> None:
+    matrix = np.diag([scale, scale, scale, 1.0])
+    for camera in (camera_at(scale), square_camera()):
+        picture_of(egl_device, sphere(0.5), MATTE, matrix, camera, **mode)
+
+
 @pytest.mark.parametrize(
     "scales",
     [
@@ -361,3 +373,21 @@ def test_a_picture_of_any_shape(
     picture = draw_radiance(egl_device, scene, camera, size, samples=samples)
     assert picture.shape == (size[1], size[0], 4)
     assert np.isfinite(picture).all()
+
+
+@pytest.mark.parametrize("extent", [1e-38, 1e-30, 1e-20, 1e18, 1e30, 3e38])
+@pytest.mark.parametrize("choice", [None, Orbit(1.0, 0.5)])
+def test_positions_at_the_ends_of_float32(
+    egl_device: GraphicsDevice, extent: float, choice: Orbit | None
+) -> None:
+    """A finite picture, or an error that says why there is none."""
+    positions = SQUARE.attributes["POSITION"] * np.float32(extent)
+    primitive = Primitive(
+        {**SQUARE.attributes, "POSITION": positions}, SQUARE.indices
+    )
+    scene = scene_of([(primitive, MATTE, np.eye(4))], sky(), lights=sun())
+    with contextlib.suppress(MokaError):
+        camera = choose_camera(scene, choice, 1.0)
+        picture = draw_radiance(egl_device, scene, camera, (8, 8))
+        assert np.isfinite(picture).all()
+        assert (picture >= 0.0).all()
