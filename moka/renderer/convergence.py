@@ -17,7 +17,7 @@ _FRAME_SAMPLES = 8
 # Where an error decides, a batch is as long as the step in which to stop;
 # else as long as leaves enough batches to tell the error. Longer ones have
 # more of what a low-discrepancy sequence gives over random numbers: 1024
-# samples in batches of 64 in place of 32 have 3/4 of the error.
+# samples in batches of 64 in place of 32 have 4/5 of the error.
 _STEP_SAMPLES = 32
 _FEWEST_BATCHES = 16
 
