@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from moka.commands.descriptors import TextureDescriptor, TextureKind
 from moka.commands.handles import Handle
+from moka.core import solid_angle
 from moka.core.resources import shader_folder
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.disk_cache import Arrays, DiskCache
@@ -190,6 +191,6 @@ def _makers() -> str:
     digest = hashlib.blake2b(f"{__version__} {np.__version__}".encode())
     modules = Path(__file__).parent.glob("*.py")
     shaders = shader_folder().rglob("*.*")
-    for path in sorted((*modules, *shaders)):
+    for path in sorted((*modules, Path(solid_angle.__file__), *shaders)):
         digest.update(path.read_bytes())
     return digest.hexdigest()
