@@ -37,7 +37,7 @@ bench: $(VENV)/.bench
 	@mkdir -p build
 	$(BIN)/python tests/benchmarks/compare.py $(ARGS) \
 	    --name moka "$(BIN)/moka render $(MODEL) --size 1024x1024 \
-	        --environment $(ENVIRONMENT) -o build/moka.png" \
+	        --environment $(ENVIRONMENT) --no-cache -o build/moka.png" \
 	    --name bare "$(BIN)/python tests/benchmarks/bare_moderngl.py \
 	        $(MODEL) $(ENVIRONMENT) --size 1024x1024 -o build/bare.png"
 

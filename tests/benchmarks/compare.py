@@ -1,7 +1,7 @@
 """Run command lines alternately and compare their time and memory.
 
     python tests/benchmarks/compare.py -n 9 \\
-        --name moka 'moka render MODEL --environment SKY -o moka.png' \\
+        --name moka 'moka render MODEL --environment SKY --no-cache' \\
         --name bare 'python tests/benchmarks/bare_moderngl.py MODEL SKY'
 
 Every run is a fresh process, in the order A B A B, so that a machine that
