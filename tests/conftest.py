@@ -1,5 +1,6 @@
 """Fixtures that every test can ask for."""
 
+from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 
@@ -13,6 +14,17 @@ settings.load_profile("moka")
 _numbers = count()
 
 ASSETS = Path(__file__).resolve().parents[2] / "shared" / "assets"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def cache_of_the_session(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[None]:
+    """Keep fixtures that outlive a test away from the user's cache too."""
+    with pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.getbasetemp() / "cache"
+        patch.setenv("MOKA_CACHE_DIR", str(folder))
+        yield
 
 
 @pytest.fixture(autouse=True)
