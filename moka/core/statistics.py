@@ -93,10 +93,18 @@ def write_statistics(statistics: Statistics, path: Path) -> None:
 def _peak_memory_mb() -> float | None:
     """The largest resident set of this process, where the system tells."""
     try:
+        # Linux hands getrusage's figure down from the parent of a process.
+        status = Path("/proc/self/status").read_text(encoding="ascii")
+        line = next(
+            line for line in status.splitlines() if line.startswith("VmHWM:")
+        )
+        return round(int(line.split()[1]) / 1024, 1)
+    except (OSError, StopIteration):
+        pass
+    try:
         import resource
     except ImportError:
         return None
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    # Kibibytes on Linux, bytes on macOS.
-    unit = 1 << 20 if sys.platform == "darwin" else 1 << 10
-    return round(peak / unit, 1)
+    # Bytes on macOS, kibibytes elsewhere.
+    return round(peak / (1 << (20 if sys.platform == "darwin" else 10)), 1)
