@@ -5,9 +5,11 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from functools import partial
 from importlib import import_module
 from typing import NoReturn
 
+from moka.cli.process import INTERRUPTED, run_process
 from moka.core.errors import MokaError, OptionError
 from moka.version import __version__
 
@@ -29,7 +31,6 @@ _COMMANDS = {
 
 USER_ERROR = 2
 INTERNAL_ERROR = 1
-INTERRUPTED = 130
 
 
 class _Parser(argparse.ArgumentParser):
@@ -43,9 +44,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code.
 
     ``arguments`` are those after the program's name, by default those of
-    the process.
+    the process, which then is ours: see :func:`run_process`.
     """
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None:
+        return run_process(partial(_run, sys.argv[1:]))
+    return _run(list(arguments))
+
+
+def _run(given: Sequence[str]) -> int:
     # NumPy's linear algebra starts a thread per core when it is loaded and
     # has only small matrices here: 40 ms of a processor for nothing.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -60,7 +66,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail("interrupted", INTERRUPTED, debug=debug)
     except BrokenPipeError:
         # Whoever read our output has gone; that is not an error.
-        sys.stderr.close()
         return 0
     except Exception as error:
         kind = type(error).__name__

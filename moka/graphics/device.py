@@ -111,8 +111,13 @@ class GraphicsDevice:
     def __enter__(self) -> "GraphicsDevice":
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __exit__(self, _kind: object, error: object, _: object) -> None:
+        if isinstance(error, KeyboardInterrupt):
+            # Whoever pressed Ctrl-C does not wait for a slow frame.
+            self._finalizer.detach()
+            self._thread.close(timeout=0.0)
+        else:
+            self.close()
 
     @property
     def info(self) -> BackendInfo:

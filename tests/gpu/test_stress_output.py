@@ -1,9 +1,12 @@
 """The way out of the renderer: display values, files, pipes, Ctrl-C."""
 
+import itertools
 import os
 import resource
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -169,6 +172,57 @@ def test_an_exr_file_keeps_what_half_floats_cannot(tmp_path: Path) -> None:
         assert read_exr(output)[0][4, 4, 0] == pytest.approx(most)
 
 
+SLOW = ["--size", "4096x4096", "--ibl", "reference"]
+SLOW += ["--reference-samples", "100000"]
+
+
+STARTED = "from moka.cli import main; print(flush=True); main()"
+
+
+@pytest.mark.parametrize("delay", [0.1, 0.5, 3.0])
+def test_control_c_ends_a_render_at_once(tmp_path: Path, delay: float) -> None:
+    """While it imports, compiles or draws frames of many seconds."""
+    output = tmp_path / "out.png"
+    process = subprocess.Popen(
+        [sys.executable, "-c", STARTED, "render", "-o", str(output), *SLOW],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(delay)
+    process.send_signal(signal.SIGINT)
+    start = time.monotonic()
+    _, errors = process.communicate(timeout=30)
+    # Half a second of it is ours, the rest a busy machine's.
+    assert time.monotonic() - start < 2.0
+    assert process.returncode == 130
+    assert errors == "moka: error: interrupted\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_control_c_ends_a_device_without_waiting_for_its_work() -> None:
+    from threading import Event
+
+    from moka.backend.recording_backend import RecordingBackend
+
+    is_done = Event()
+    device = GraphicsDevice(RecordingBackend)
+
+    def draw() -> None:
+        with device:
+            device._thread.post(lambda _: is_done.wait(20))
+            raise KeyboardInterrupt
+
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        draw()
+    assert time.monotonic() - start < 5.0
+    assert device.is_closed
+    is_done.set()
+
+
 @pytest.mark.parametrize("suffix", [".png", ".exr"])
 def test_a_full_disk_is_named_and_nothing_is_left(
     tmp_path: Path, suffix: str
@@ -190,3 +244,24 @@ def test_a_full_disk_is_named_and_nothing_is_left(
     assert process.stderr.startswith(f"moka: error: {output}: cannot write")
     assert process.stderr.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_reader_who_leaves_is_no_error(tmp_path: Path) -> None:
+    model = tmp_path / "square.glb"
+    save_model(model_of([(quad(2.0), None, np.eye(4))]), model)
+    buffered = {**os.environ, "PYTHONUNBUFFERED": ""}
+    for command, environment in itertools.product(
+        (["info", str(model)], ["info", str(model), "--json"], ["--help"]),
+        (buffered, {**buffered, "PYTHONUNBUFFERED": "1"}),
+    ):
+        reading, writing = os.pipe()
+        os.close(reading)
+        with open(writing, "wb") as pipe:
+            process = subprocess.run(
+                [*MOKA, *command],
+                stdout=pipe,
+                stderr=subprocess.PIPE,
+                env=environment,
+            )
+        assert process.returncode == 0
+        assert process.stderr == b""
