@@ -17,7 +17,8 @@ layout(location = 1) out vec4 moments;  // of luminance: sum, squares; count
 void main() {
     vec4 mean =
         texelFetch(batch_map, ivec2(gl_FragCoord.xy), 0) / float(frames);
-    float luminance = dot(mean.rgb, vec3(0.2126, 0.7152, 0.0722));
+    // Sums of squares of more are infinite; such light goes unjudged.
+    float luminance = min(dot(mean.rgb, vec3(0.2126, 0.7152, 0.0722)), 1e15);
     sum = mean;
     moments = vec4(luminance, luminance * luminance, 1.0, 0.0);
 }

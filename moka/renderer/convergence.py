@@ -87,9 +87,9 @@ class Convergence:
         errors = np.sqrt(square)
         self.error = float(errors.max())
         if self._max_error is not None:
-            self.active &= (errors > self._max_error) | (
-                batches < _BATCHES_TO_TRUST
-            )
+            # NaN is not small.
+            is_small = errors <= self._max_error
+            self.active &= ~(is_small & (batches >= _BATCHES_TO_TRUST))
 
 
 def rectangles(

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from moka.commands.command_list import CommandList
 from moka.core.errors import OptionError
 from moka.core.exr import read_exr
 from moka.core.tone_map import TONE_MAPS, tone_map
@@ -19,6 +20,8 @@ from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
 from moka.material.material import AlphaMode, Material
 from moka.model import model_of, quad, save_model, sphere
+from moka.renderer.renderer import Renderer
+from moka.renderer.settings import RenderSettings
 from tests.support.pictures import (
     draw_radiance,
     draw_with_display,
@@ -148,6 +151,35 @@ def test_averages_of_samples_stay_finite(egl_device: GraphicsDevice) -> None:
         max_error=0.5,
     )
     assert np.isfinite(picture).all()
+
+
+def test_the_error_of_extreme_light_is_a_number(
+    egl_device: GraphicsDevice,
+) -> None:
+    """It goes into the statistics' JSON, which knows no NaN.
+
+    Squares of less than 1e-15 and more than 1e15 are beyond float32, and
+    such light is taken for even.
+    """
+    for radiance in (1e-30, 1e-12, 1e12, 1e20, 1e30):
+        generator = np.random.default_rng(7)
+        pixels = radiance * generator.uniform(0.1, 1.0, (8, 16, 3))
+        scene = scene_of([(sphere(0.8), None, np.eye(4))], Environment(pixels))
+        settings = RenderSettings(
+            ibl="reference", reference_samples=128, max_error=0.01
+        )
+        renderer = Renderer(egl_device, (8, 8), settings)
+        while True:
+            commands = CommandList()
+            renderer.draw(scene, square_camera(), commands)
+            egl_device.submit(commands).wait()
+            if renderer.is_complete:
+                break
+        error = renderer.lighting_statistics["estimated_error"]
+        renderer.close()
+        assert 0.0 <= error < 1.0, radiance
+        if 1e-15 < radiance < 1e15:
+            assert error > 0.0, radiance
 
 
 @pytest.mark.parametrize("exposure", [-65, 65, np.inf, np.nan])

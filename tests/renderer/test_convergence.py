@@ -88,6 +88,12 @@ def test_converged_tiles_stay_so():
     assert convergence.error == pytest.approx(0.12)
 
 
+def test_an_error_that_is_no_number_is_not_small():
+    convergence = Convergence((1, 2), 0.1)
+    convergence.update(report([np.nan, 0.05], 8))
+    assert convergence.active.tolist() == [[True, False]]
+
+
 def test_without_an_aim_everything_is_sampled_on():
     convergence = Convergence((1, 2), None)
     convergence.update(report([0.0, 0.0], 100))
