@@ -14,7 +14,7 @@ from moka.lighting.environment import Environment
 from moka.material.material import Material
 from moka.model.geometry import sphere
 from tests.support import mitsuba_spheres
-from tests.support.mitsuba_spheres import BALLS, SAMPLES, SIZE, environment_map
+from tests.support.mitsuba_spheres import BALLS, SIZE, environment_map
 from tests.support.pictures import draw_radiance, scene_of, square_camera
 
 pytestmark = pytest.mark.gpu
@@ -63,13 +63,13 @@ def test_a_sphere_has_the_radiance_that_mitsuba_sees(
         square_camera(),
         (SIZE, SIZE),
         ibl="reference",
-        reference_samples=SAMPLES,
+        reference_samples=1024,
         multiscatter=False,
     )
     centre = (np.arange(SIZE) + 0.5) / SIZE * 2 - 1
     inside = np.hypot(*np.meshgrid(centre, centre)) < EDGE
     ratio = drawn[inside][:, :3] / traced[name][inside] - 1
-    # Noise of two estimates, each of 256 samples; and a pixel is a square
-    # of normals, seen at other points by each.
-    assert np.sqrt(np.mean(ratio**2)) < 0.03
-    assert np.abs(ratio.mean(axis=0)).max() < 0.01
+    # Noise of two estimates. A pixel is a square of normals, and the 128
+    # frames of one see it at other points than the other.
+    assert np.sqrt(np.mean(ratio**2)) < 0.02
+    assert np.abs(ratio.mean(axis=0)).max() < 0.004
