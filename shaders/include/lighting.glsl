@@ -3,6 +3,7 @@
 
 #include "include/brdf.glsl"
 #include "include/diffuse.glsl"
+#include "include/direction.glsl"
 #include "include/environment.glsl"
 #include "include/multiscatter.glsl"
 
@@ -195,7 +196,7 @@ vec3 punctual_light(Surface surface) {
             towards = light.position - surface_position;
             // The square of a distance beyond 1e19 m is infinite.
             float squared = min(dot(towards, towards), 1e38);
-            towards *= inversesqrt(max(squared, 1e-30));
+            towards = direction_of(towards);
             float cone = dot(-towards, light.direction);
             float spot = clamp(
                 cone * light.angle_scale + light.angle_offset, 0.0, 1.0);
