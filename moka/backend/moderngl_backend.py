@@ -8,7 +8,6 @@ mesh, with the instance attributes pointed at its rows.
 import contextlib
 import time
 from collections.abc import Callable, Iterator
-from ctypes import byref, c_float
 from typing import Any, cast
 
 import numpy as np
@@ -17,7 +16,9 @@ from numpy.typing import NDArray
 from moka.backend import gl_constants as c
 from moka.backend.batching import INDIRECT, Batches, MeshTable, merge_draws
 from moka.backend.contexts import GraphicsContext, WindowContext
+from moka.backend.gl_commands import CommandRunner
 from moka.backend.gl_functions import Functions
+from moka.backend.gl_info import read_info
 from moka.backend.gl_programs import (
     Bindings,
     BlockRegistry,
@@ -29,19 +30,8 @@ from moka.backend.gl_programs import (
 )
 from moka.backend.gl_state import StateCache
 from moka.backend.gl_textures import GlFramebuffer, GlTexture, SamplerCache
-from moka.backend.protocol import BackendInfo, FrameCounters, TextureData
+from moka.backend.protocol import FrameCounters, TextureData
 from moka.commands.command_list import DrawSpan, Recording
-from moka.commands.commands import (
-    BindFramebuffer,
-    Clear,
-    Command,
-    FillBuffer,
-    GenerateMipmaps,
-    ReadPixels,
-    ResolveFramebuffer,
-    SetScissor,
-    SetViewport,
-)
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,
@@ -83,7 +73,7 @@ class ModernGLBackend:
         self._ctx.gc_mode = None
         self._gl = Functions(context.function)
         self._explain = explain
-        self.info = _read_info(
+        self.info = read_info(
             context, multi_draw=multi_draw, clip_control=clip_control
         )
         self._state = StateCache(self._gl)
@@ -102,11 +92,10 @@ class ModernGLBackend:
         self._commands = self._ctx.buffer(
             reserve=INDIRECT.itemsize, dynamic=True
         )
-        self._target: GlFramebuffer | None = None
         self._uploaded = 0
         self._closed = False
         self._seconds: dict[str, float] = {}
-        self._read_seconds = 0.0
+        self._runner = CommandRunner(self._gl, self._state, self._get)
         self._initialise()
 
     def create_buffer(
@@ -221,10 +210,11 @@ class ModernGLBackend:
         start = time.perf_counter()
         counters = self._execute(recording)
         spent = time.perf_counter() - start
-        if self._read_seconds:
-            self.add_time("readback", self._read_seconds)
-        self.add_time(stage, spent - self._read_seconds)
-        self._read_seconds = 0.0
+        reading = self._runner.read_seconds
+        if reading:
+            self.add_time("readback", reading)
+        self.add_time(stage, spent - reading)
+        self._runner.read_seconds = 0.0
         return counters
 
     def _execute(self, recording: Recording) -> FrameCounters:
@@ -242,9 +232,9 @@ class ModernGLBackend:
                 for batch in batches.of_span[step.start]:
                     self._draw(batches, batch, recording, counters)
             else:
-                self._run(step)
-        counters.bytes_uploaded += self._uploaded
-        self._uploaded = 0
+                self._runner.run(step)
+        counters.bytes_uploaded += self._uploaded + self._runner.uploaded
+        self._uploaded = self._runner.uploaded = 0
         self._check_errors("frame")
         return counters
 
@@ -437,76 +427,6 @@ class ModernGLBackend:
                 int(command["base_vertex"]),
             )
 
-    def _run(self, command: Command) -> None:
-        match command:
-            case BindFramebuffer(framebuffer):
-                self._bind_framebuffer(framebuffer)
-            case Clear(colour, depth):
-                self._clear(colour, depth)
-            case SetViewport(rectangle):
-                self._state.viewport(rectangle)
-            case SetScissor(rectangle):
-                self._state.scissor(rectangle)
-            case FillBuffer(buffer, data, offset):
-                self._get(buffer).write(data, offset)
-                self._uploaded += len(data)
-            case GenerateMipmaps(texture):
-                self._get(texture).generate_mipmaps()
-            case ResolveFramebuffer(source, target):
-                self._resolve(self._get(source), self._get(target))
-            case ReadPixels():
-                self._read_pixels(command)
-
-    def _bind_framebuffer(self, handle: Handle | None) -> None:
-        self._state.scissor(None)
-        if handle is None:
-            self._state.framebuffer(0)
-            self._target = None
-            return
-        self._target = self._get(handle)
-        self._state.framebuffer(self._target.name)
-        self._state.viewport((0, 0, *self._target.size))
-
-    def _clear(
-        self, colour: tuple[float, ...] | None, depth: float | None
-    ) -> None:
-        self._state.write_masks(colour=True, depth=True)
-        if colour is not None:
-            values = (c_float * 4)(*colour)
-            count = self._target.colour_count if self._target else 1
-            for attachment in range(count):
-                self._gl.ClearBufferfv(c.COLOR, attachment, byref(values))
-        if depth is not None:
-            self._gl.ClearBufferfv(c.DEPTH, 0, byref(c_float(depth)))
-
-    def _resolve(self, source: GlFramebuffer, target: GlFramebuffer) -> None:
-        gl = self._gl
-        self._state.scissor(None)
-        gl.BindFramebuffer(c.READ_FRAMEBUFFER, source.name)
-        self._state.framebuffer(target.name)
-        self._target = target
-        rectangle = (0, 0, *source.size)
-        gl.BlitFramebuffer(
-            *rectangle, *rectangle, c.COLOR_BUFFER_BIT, c.NEAREST
-        )
-
-    def _read_pixels(self, command: ReadPixels) -> None:
-        gl = self._gl
-        # Reading waits for the drawing, whose time is the frame's.
-        gl.Finish()
-        handle = command.framebuffer
-        name = 0 if handle is None else self._get(handle).name
-        gl.BindFramebuffer(c.READ_FRAMEBUFFER, name)
-        if handle is not None:
-            gl.ReadBuffer(c.COLOR_ATTACHMENT0 + command.attachment)
-        _, _, width, height = command.rectangle
-        pixels = np.empty((height, width, command.channels), command.dtype)
-        layout, kind = c.readback_format(command.channels, command.dtype)
-        start = time.perf_counter()
-        gl.ReadPixels(*command.rectangle, layout, kind, pixels.ctypes.data)
-        self._read_seconds += time.perf_counter() - start
-        command.into.data = pixels
-
     def _explain_log(self, log: str, descriptor: ProgramDescriptor) -> str:
         in_fragment = "fragment_shader" in log and "vertex_shader" not in log
         text = descriptor.fragment if in_fragment else descriptor.vertex
@@ -516,28 +436,3 @@ class ModernGLBackend:
         for message in self._context.drain_debug_messages():
             if message.is_error:
                 raise DeviceError(f"{what}: OpenGL reports {message}")
-
-
-def _read_info(
-    context: GraphicsContext, *, multi_draw: bool, clip_control: bool
-) -> BackendInfo:
-    ctx = context.gl
-    info = ctx.info
-    extensions = ctx.extensions
-    version = ctx.version_code
-    base_instance = version >= 420 or "GL_ARB_base_instance" in extensions
-    indirect = version >= 430 or "GL_ARB_multi_draw_indirect" in extensions
-    return BackendInfo(
-        kind=context.kind,
-        vendor=info["GL_VENDOR"],
-        renderer=info["GL_RENDERER"],
-        version=info["GL_VERSION"],
-        max_samples=info["GL_MAX_SAMPLES"],
-        max_texture_size=info["GL_MAX_TEXTURE_SIZE"],
-        max_uniform_block_size=info["GL_MAX_UNIFORM_BLOCK_SIZE"],
-        uniform_alignment=info["GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT"],
-        max_texture_units=info["GL_MAX_TEXTURE_IMAGE_UNITS"],
-        clip_control=clip_control
-        and (version >= 450 or "GL_ARB_clip_control" in extensions),
-        multi_draw_indirect=multi_draw and base_instance and indirect,
-    )

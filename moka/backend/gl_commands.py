@@ -1,0 +1,120 @@
+"""Executes the rare commands: what sets up and ends passes."""
+
+import time
+from collections.abc import Callable
+from ctypes import byref, c_float
+from typing import Any
+
+import numpy as np
+
+from moka.backend import gl_constants as c
+from moka.backend.gl_functions import Functions
+from moka.backend.gl_state import StateCache
+from moka.backend.gl_textures import GlFramebuffer
+from moka.commands.commands import (
+    BindFramebuffer,
+    Clear,
+    Command,
+    FillBuffer,
+    GenerateMipmaps,
+    ReadPixels,
+    ResolveFramebuffer,
+    SetScissor,
+    SetViewport,
+)
+from moka.commands.handles import Handle
+
+__all__ = ["CommandRunner"]
+
+
+class CommandRunner:
+    """Runs commands and remembers which framebuffer draws go to.
+
+    ``resource`` gives the GL object of a handle. ``uploaded`` and
+    ``read_seconds`` add up bytes written and seconds spent reading back, for
+    whoever takes them and sets them to zero.
+    """
+
+    def __init__(
+        self,
+        gl: Functions,
+        state: StateCache,
+        resource: Callable[[Handle], Any],
+    ) -> None:
+        self._gl = gl
+        self._state = state
+        self._get = resource
+        self._target: GlFramebuffer | None = None
+        self.uploaded = 0
+        self.read_seconds = 0.0
+
+    def run(self, command: Command) -> None:
+        """Execute one command."""
+        match command:
+            case BindFramebuffer(framebuffer):
+                self._bind_framebuffer(framebuffer)
+            case Clear(colour, depth):
+                self._clear(colour, depth)
+            case SetViewport(rectangle):
+                self._state.viewport(rectangle)
+            case SetScissor(rectangle):
+                self._state.scissor(rectangle)
+            case FillBuffer(buffer, data, offset):
+                self._get(buffer).write(data, offset)
+                self.uploaded += len(data)
+            case GenerateMipmaps(texture):
+                self._get(texture).generate_mipmaps()
+            case ResolveFramebuffer(source, target):
+                self._resolve(self._get(source), self._get(target))
+            case ReadPixels():
+                self._read_pixels(command)
+
+    def _bind_framebuffer(self, handle: Handle | None) -> None:
+        self._state.scissor(None)
+        if handle is None:
+            self._state.framebuffer(0)
+            self._target = None
+            return
+        self._target = self._get(handle)
+        self._state.framebuffer(self._target.name)
+        self._state.viewport((0, 0, *self._target.size))
+
+    def _clear(
+        self, colour: tuple[float, ...] | None, depth: float | None
+    ) -> None:
+        self._state.write_masks(colour=True, depth=True)
+        if colour is not None:
+            values = (c_float * 4)(*colour)
+            count = self._target.colour_count if self._target else 1
+            for attachment in range(count):
+                self._gl.ClearBufferfv(c.COLOR, attachment, byref(values))
+        if depth is not None:
+            self._gl.ClearBufferfv(c.DEPTH, 0, byref(c_float(depth)))
+
+    def _resolve(self, source: GlFramebuffer, target: GlFramebuffer) -> None:
+        gl = self._gl
+        self._state.scissor(None)
+        gl.BindFramebuffer(c.READ_FRAMEBUFFER, source.name)
+        self._state.framebuffer(target.name)
+        self._target = target
+        rectangle = (0, 0, *source.size)
+        gl.BlitFramebuffer(
+            *rectangle, *rectangle, c.COLOR_BUFFER_BIT, c.NEAREST
+        )
+
+    def _read_pixels(self, command: ReadPixels) -> None:
+        gl = self._gl
+        # Reading waits for the drawing, whose time is the frame's.
+        gl.Finish()
+        handle = command.framebuffer
+        name = 0 if handle is None else self._get(handle).name
+        gl.BindFramebuffer(c.READ_FRAMEBUFFER, name)
+        if handle is not None:
+            gl.ReadBuffer(c.COLOR_ATTACHMENT0 + command.attachment)
+        _, _, width, height = command.rectangle
+        pixels = np.empty((height, width, command.channels), command.dtype)
+        layout, kind = c.readback_format(command.channels, command.dtype)
+        start = time.perf_counter()
+        gl.ReadPixels(*command.rectangle, layout, kind, pixels.ctypes.data)
+        self.read_seconds += time.perf_counter() - start
+        command.into.data = pixels
