@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from moka.core.errors import OptionError
 from moka.core.image import Image
+from moka.core.option_text import LARGEST_SIDE
 from moka.core.statistics import Statistics
 from moka.renderer.quality import settings_of_quality
 from moka.renderer.settings import RenderSettings
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     from moka.scene.scene import Scene
 
 __all__ = ["RenderRequest", "render", "render_request"]
-
-LARGEST_SIDE = 16384
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,7 +70,6 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "GenSamplers": (None, _INT, _POINTER),
     "GenTextures": (None, _INT, _POINTER),
     "GenerateMipmap": (None, _UINT),
-    "GetError": (_UINT,),
     "GetTexImage": (None, _UINT, _INT, _UINT, _UINT, _POINTER),
     "MultiDrawArraysIndirect": (None, _UINT, _POINTER, _INT, _INT),
     "MultiDrawElementsIndirect": (

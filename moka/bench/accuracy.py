@@ -3,8 +3,9 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from moka.bench.options import add_backend_option, count
+from moka.bench.options import add_backend_option
 from moka.core.errors import OptionError
+from moka.core.option_text import count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -4,7 +4,8 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
-from moka.bench.options import add_scene_options, count, number
+from moka.bench.options import add_scene_options
+from moka.core.option_text import count, number
 
 if TYPE_CHECKING:
     from moka.bench.steady import FrameTimes

@@ -3,7 +3,8 @@
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from moka.bench.options import add_backend_option, count
+from moka.bench.options import add_backend_option
+from moka.core.option_text import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable

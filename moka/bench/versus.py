@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from moka.bench.options import count
+from moka.core.option_text import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from moka.core.errors import OptionError
+from moka.core.option_text import count, number, size
 
 if TYPE_CHECKING:
     from moka.app.render import RenderRequest
 
 __all__ = ["add_arguments", "execute"]
 
-MAXIMUM_SIDE = 16384
 SUFFIXES = (".png", ".exr")
 
 
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--size",
         metavar="WxH",
-        type=_size,
+        type=size,
         default=(1280, 720),
         help="pixels (default: 1280x720)",
     )
@@ -51,14 +51,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--environment-rotation",
         metavar="DEG",
-        type=_number,
+        type=number,
         default=0.0,
         help="counter-clockwise about +Y (default: 0)",
     )
     add(
         "--environment-intensity",
         metavar="X",
-        type=_number,
+        type=number,
         default=1.0,
         help="radiance multiplier (default: 1)",
     )
@@ -77,7 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--exposure",
         metavar="EV",
-        type=_number,
+        type=number,
         default=0.0,
         help="stops (default: 0)",
     )
@@ -91,7 +91,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--samples",
         metavar="N",
-        type=_count,
+        type=count,
         default=4,
         help="multisampling, 1 turns it off (default: 4)",
     )
@@ -142,21 +142,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--ibl-samples",
         metavar="N",
-        type=_count,
+        type=count,
         help="samples a pixel of --ibl filtered (default: 16, with --quality "
         "best 32)",
     )
     add(
         "--reference-samples",
         metavar="N",
-        type=_count,
+        type=count,
         help="samples a pixel of --ibl reference (default: 1024; with "
         "--max-error 16384 at most)",
     )
     add(
         "--max-error",
         metavar="E",
-        type=_number,
+        type=number,
         help="relative standard error at which --ibl reference stops",
     )
     add(
@@ -287,39 +287,9 @@ def _check_outputs(outputs: list[Path], statistics: Path | None) -> None:
             raise OptionError(f"{path}: is a folder")
 
 
-def _size(text: str) -> tuple[int, int]:
-    width, _, height = text.lower().partition("x")
-    if not (width.isdecimal() and height.isdecimal()):
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not WIDTHxHEIGHT, such as 1280x720"
-        )
-    size = int(width), int(height)
-    if not all(1 <= side <= MAXIMUM_SIDE for side in size):
-        raise argparse.ArgumentTypeError(
-            f"{text!r}: each side must be from 1 to {MAXIMUM_SIDE}"
-        )
-    return size
-
-
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
-    return value
-
-
 def _suns(text: str) -> str | int:
     if text in ("auto", "off"):
         return text
     if not text.isdecimal():
         raise argparse.ArgumentTypeError(f"{text!r} is not auto, off or 1, 2…")
-    return int(text)
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is not 1, 2, 3, ...")
     return int(text)

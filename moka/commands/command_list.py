@@ -194,11 +194,6 @@ class CommandList:
         """Whether nothing has been recorded."""
         return not self._buffers and not self._draw_count
 
-    @property
-    def draw_count(self) -> int:
-        """How many draws are recorded."""
-        return self._draw_count
-
     def command_buffer(self, key: SortKey | int | None = None) -> CommandBuffer:
         """A buffer whose commands run together at ``key``'s place."""
         value = self._last_key if key is None else int(key)
