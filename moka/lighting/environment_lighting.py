@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.lighting.environment import Environment, Sun
-from moka.lighting.preintegration import EnvironmentMaps
+from moka.lighting.environment_maps import EnvironmentMaps
 
 __all__ = ["EnvironmentLighting", "LightingRequest"]
 

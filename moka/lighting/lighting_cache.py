@@ -21,18 +21,14 @@ from moka.commands.handles import Handle
 from moka.core import solid_angle
 from moka.core.resources import shader_folder
 from moka.graphics.device import GraphicsDevice
+from moka.lighting.brdf_table import TABLE
 from moka.lighting.disk_cache import Arrays, DiskCache
 from moka.lighting.environment import Sun
 from moka.lighting.environment_lighting import (
     EnvironmentLighting,
     LightingRequest,
 )
-from moka.lighting.preintegration import (
-    CUBE_FORMAT,
-    TABLE_FORMAT,
-    TABLE_SIZE,
-    EnvironmentMaps,
-)
+from moka.lighting.environment_maps import CUBE_FORMAT, EnvironmentMaps
 from moka.version import __version__
 
 __all__ = ["LightingCache"]
@@ -75,10 +71,7 @@ class LightingCache:
         arrays = self._files.load(self._key("table", brdf))
         if arrays is None:
             return None
-        descriptor = TextureDescriptor(
-            TABLE_FORMAT, TABLE_SIZE, TABLE_SIZE, label="table"
-        )
-        return self._device.create_texture(descriptor, [arrays["table"]])
+        return self._device.create_texture(TABLE, [arrays["table"]])
 
     def keep_table(self, brdf: str, table: Handle) -> None:
         """Write ``table`` at the next :meth:`flush`."""

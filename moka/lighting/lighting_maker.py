@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
+from moka.lighting.brdf_table import make_brdf_table
 from moka.lighting.disk_cache import DiskCache
 from moka.lighting.environment_lighting import (
     EnvironmentLighting,
@@ -43,6 +44,8 @@ class LightingMaker:
         passes: FullscreenPasses,
         cache: DiskCache | None = None,
     ) -> None:
+        self._device = device
+        self._passes = passes
         self._preintegrator = Preintegrator(device, passes)
         self._cache = LightingCache(device, cache)
         self._tables: dict[str, Handle] = {}
@@ -60,11 +63,11 @@ class LightingMaker:
         return lighting
 
     def table(self, brdf: str) -> Handle:
-        """The BRDF table of ``brdf``; see Preintegrator.brdf_table."""
+        """The BRDF table of ``brdf``; see moka.lighting.brdf_table."""
         if brdf not in self._tables:
             table = self._cache.load_table(brdf)
             if table is None:
-                table = self._preintegrator.brdf_table(brdf)
+                table = make_brdf_table(self._device, self._passes, brdf)
                 self._cache.keep_table(brdf, table)
             self._tables[brdf] = table
         return self._tables[brdf]

@@ -22,9 +22,9 @@ from moka.lighting.environment_lighting import (
     EnvironmentLighting,
     LightingRequest,
 )
+from moka.lighting.environment_maps import EnvironmentMaps
 from moka.lighting.importance import importance_table
 from moka.lighting.lighting_maker import LightingMaker
-from moka.lighting.preintegration import EnvironmentMaps
 from moka.lighting.suns import AUTO_SUNS, full_map
 from moka.renderer.permutation import lights_layout
 from moka.renderer.view import turn_matrix
@@ -60,7 +60,7 @@ class LightSources:
         self._buffers: dict[int, Handle] = {}
 
     def table(self, brdf: str) -> Handle:
-        """The BRDF table; see Preintegrator.brdf_table."""
+        """The BRDF table; see moka.lighting.brdf_table."""
         return self._maker.table(brdf)
 
     @property

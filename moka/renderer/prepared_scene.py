@@ -21,10 +21,10 @@ from moka.commands.descriptors import (
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
-from moka.lighting.preintegration import (
+from moka.lighting.brdf_table import TABLE_SAMPLER
+from moka.lighting.environment_maps import (
     CUBE_SAMPLER,
     MAP_SAMPLER,
-    TABLE_SAMPLER,
     EnvironmentMaps,
 )
 from moka.material.description import (

@@ -27,7 +27,7 @@ from moka.graphics.uniform_block import (
     UniformLayout,
 )
 from moka.lighting.environment import Sun
-from moka.lighting.preintegration import CUBE_SAMPLER, MAP_SAMPLER
+from moka.lighting.environment_maps import CUBE_SAMPLER, MAP_SAMPLER
 from moka.renderer.targets import Targets
 from moka.renderer.view import View
 

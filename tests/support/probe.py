@@ -29,8 +29,9 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FULLSCREEN, FullscreenPasses
 from moka.graphics.shader_source import load_shader, preprocess_shader
+from moka.lighting.brdf_table import TABLE_SAMPLER
 from moka.lighting.environment import Environment
-from moka.lighting.preintegration import CUBE_SAMPLER, TABLE_SAMPLER
+from moka.lighting.environment_maps import CUBE_SAMPLER
 from moka.material.description import Feature
 from moka.renderer.light_sources import LightSources, light_capacity
 from moka.renderer.permutation import (

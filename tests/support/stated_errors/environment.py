@@ -7,7 +7,7 @@ import numpy as np
 
 from moka.core.solid_angle import cube_texel_solid_angles
 from moka.lighting.environment import load_environment
-from moka.lighting.preintegration import level_roughness
+from moka.lighting.specular_cube import level_roughness
 from moka.lighting.spherical_harmonics import (
     irradiance_error,
     irradiance_harmonics,

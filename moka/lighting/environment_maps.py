@@ -1,0 +1,66 @@
+"""The textures that one environment is on the GPU, and how they are read."""
+
+from dataclasses import dataclass, field
+
+from moka.commands.descriptors import (
+    MipmapMode,
+    PixelFormat,
+    SamplerDescriptor,
+    Wrap,
+)
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+
+__all__ = [
+    "CUBE_FORMAT",
+    "CUBE_SAMPLER",
+    "MAP_SAMPLER",
+    "SOURCE_SAMPLER",
+    "EnvironmentMaps",
+]
+
+# u wraps around, v ends at the poles.
+MAP_SAMPLER = SamplerDescriptor(wrap_t=Wrap.CLAMP_TO_EDGE)
+CUBE_SAMPLER = SamplerDescriptor(Wrap.CLAMP_TO_EDGE, Wrap.CLAMP_TO_EDGE)
+# Samples of a lobe read the nearest level: as exact as mixing two, in three
+# quarters of the time.
+SOURCE_SAMPLER = SamplerDescriptor(
+    Wrap.CLAMP_TO_EDGE, Wrap.CLAMP_TO_EDGE, mipmap=MipmapMode.NEAREST
+)
+
+# Float32 holds a sun of any radiance unscaled. Half floats are as exact but
+# for that, and not faster to make.
+CUBE_FORMAT = PixelFormat.RGBA32F
+
+
+@dataclass(slots=True)
+class EnvironmentMaps:
+    """What is there of one environment; None where nothing asked for it.
+
+    ``map`` is the equirectangular map with its suns, ``specular`` the
+    prefiltered cube, whose level 0 is the mirror image of that map and
+    whose other levels, of :func:`moka.lighting.specular_cube.level_roughness`,
+    lack the suns. ``irradiance`` is a cube of E / pi, without them too;
+    ``radiance`` is the environment itself without them, with levels, as
+    filtered lighting samples it. ``importance`` is the table by which
+    reference lighting samples ``map``.
+    """
+
+    map: Handle | None = None
+    specular: Handle | None = None
+    specular_levels: int = 1
+    irradiance: Handle | None = None
+    radiance: Handle | None = None
+    radiance_levels: int = 1
+    importance: Handle | None = None
+    resources: list[Handle] = field(default_factory=list)
+
+    @property
+    def lights_surfaces(self) -> bool:
+        """Whether surfaces reflect the environment."""
+        return self.specular is not None or self.importance is not None
+
+    def destroy(self, device: GraphicsDevice) -> None:
+        """Destroy all of it."""
+        device.destroy(*self.resources)
+        self.resources.clear()

@@ -1,0 +1,100 @@
+"""From an equirectangular map to a cube of radiance and its levels."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.descriptors import (
+    PixelFormat,
+    TextureBinding,
+    TextureDescriptor,
+    TextureKind,
+)
+from moka.commands.handles import Handle
+from moka.graphics.device import GraphicsDevice
+from moka.lighting.environment_maps import (
+    CUBE_FORMAT,
+    CUBE_SAMPLER,
+    MAP_SAMPLER,
+)
+from moka.lighting.preintegration_passes import PreintegrationPasses
+from moka.lighting.specular_cube import SMALLEST_SPECULAR
+
+__all__ = [
+    "cube_size",
+    "downsample",
+    "map_to_cube",
+    "uniform_cube",
+    "upload_map",
+]
+
+LARGEST_CUBE = 1024
+
+
+def cube_size(map_height: int) -> int:
+    """Texels along a cube's edge for a map of ``map_height`` rows.
+
+    As many to the right angle as the map has at its equator, rounded up to
+    a power of two.
+    """
+    # At least two levels: a mirror image, and one for all rough surfaces.
+    texels = max(map_height / 2, 2 * SMALLEST_SPECULAR)
+    return min(LARGEST_CUBE, 1 << math.ceil(math.log2(texels)))
+
+
+def upload_map(device: GraphicsDevice, pixels: NDArray[np.float32]) -> Handle:
+    """A texture of an equirectangular map (H, W, 3)."""
+    height, width = pixels.shape[:2]
+    return device.create_texture(
+        TextureDescriptor(
+            PixelFormat.RGB32F, width, height, label="environment map"
+        ),
+        [pixels],
+    )
+
+
+def uniform_cube(
+    device: GraphicsDevice, radiance: NDArray[np.float32]
+) -> Handle:
+    """``radiance`` (3,) from everywhere: one texel a face says it all."""
+    texel = np.append(radiance, np.float32(1))
+    return device.create_texture(
+        TextureDescriptor(CUBE_FORMAT, 1, 1, TextureKind.CUBE),
+        [np.tile(texel, (6, 1, 1, 1))],
+    )
+
+
+def map_to_cube(
+    passes: PreintegrationPasses,
+    map_texture: Handle,
+    map_height: int,
+    cube: Handle,
+    size: int,
+    subdivisions: int,
+) -> None:
+    """Resample a map of ``map_height`` rows into level 0 of ``cube``.
+
+    Each texel is the mean of ``subdivisions`` squared samples; of more, if
+    it covers several texels of a large map.
+    """
+    passes.cube_level(
+        "equirectangular_to_cube.frag",
+        cube,
+        0,
+        size,
+        TextureBinding("environment_map", map_texture, MAP_SAMPLER),
+        subdivisions=max(subdivisions, -(-map_height // (2 * size))),
+    )
+
+
+def downsample(passes: PreintegrationPasses, cube: Handle, size: int) -> None:
+    """Make all levels of a cube of ``size`` from its level 0."""
+    for level in range(1, size.bit_length()):
+        passes.cube_level(
+            "downsample_cube.frag",
+            cube,
+            level,
+            size >> level,
+            TextureBinding("environment_cube", cube, CUBE_SAMPLER, level - 1),
+        )
