@@ -140,12 +140,14 @@ class Primitive:
 class Mesh(Struct, eq=False):
     """Primitives that nodes place together.
 
-    ``weights`` are the default weights of morph targets.
+    ``target_count`` is how many morph targets each of them has, ``weights``
+    are the default weights of these; empty for zeros.
     """
 
     name: str
     primitives: list[Primitive]
     weights: list[float] = []
+    target_count: int = 0
 
 
 def _bounds(positions: NDArray[np.float32]) -> Bounds:

@@ -31,7 +31,8 @@ class NodeTree(Struct, eq=False):
     (N, 4, 4) matrices from a node's space to its parent's, indexed [row,
     column]; ``mesh``, ``camera`` and ``light`` what a node places, -1 for
     nothing; ``source`` the node's index in the file. All but ``names`` and
-    ``local`` are int32 (N,).
+    ``local`` are int32 (N,). ``weights`` are the weights of morph targets
+    that rows give to their mesh, for the rows that do.
     """
 
     names: list[str]
@@ -41,6 +42,7 @@ class NodeTree(Struct, eq=False):
     camera: Indices
     light: Indices
     source: Indices
+    weights: dict[int, list[float]] = {}
 
     def __len__(self) -> int:
         return len(self.names)
@@ -105,6 +107,7 @@ def read_nodes(source: GltfSource, light_count: int) -> NodeTree:
         ],
         light=read_node_lights(source, light_count)[order],
         source=order,
+        weights=_weights(source, rows),
     )
 
 
@@ -151,6 +154,27 @@ def _references(
             f"nodes[{wrong[0]}].{name}", int(indices[wrong[0]]), kind, count
         )
     return indices
+
+
+def _weights(source: GltfSource, rows: Indices) -> dict[int, list[float]]:
+    """Weights of morph targets by row, as many as the node's mesh has."""
+    document = source.document
+    given = [row for row, node in enumerate(document.nodes) if node.weights]
+    if not given:
+        return {}
+    from moka.model.morphs import check_weights
+
+    weights = {}
+    for index in given:
+        node = document.nodes[index]
+        path = f"nodes[{index}].weights"
+        if node.mesh is None:
+            raise source.error(path, "belong to a mesh, and the node has none")
+        check_weights(
+            source, path, node.weights, document.meshes[node.mesh].target_count
+        )
+        weights[int(rows[index])] = node.weights
+    return weights
 
 
 def _local_matrices(source: GltfSource) -> Array:

@@ -39,7 +39,13 @@ def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
             for number, primitive in enumerate(mesh.primitives)
             if "POSITION" in primitive.attributes
         ]
-        meshes.append(Mesh(mesh.name, primitives, mesh.weights))
+        if mesh.target_count or mesh.weights:
+            from moka.model.morphs import check_targets
+
+            check_targets(source, f"meshes[{index}]", mesh)
+        meshes.append(
+            Mesh(mesh.name, primitives, mesh.weights, mesh.target_count)
+        )
     return meshes
 
 

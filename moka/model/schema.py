@@ -120,6 +120,11 @@ class Mesh(Property):
     weights: list[float] = []
     name: str = ""
 
+    @property
+    def target_count(self) -> int:
+        """Morph targets of the first primitive: all must have as many."""
+        return len(self.primitives[0].targets) if self.primitives else 0
+
 
 class Node(Property):
     children: list[Index] = []
@@ -129,6 +134,7 @@ class Node(Property):
     translation: Vector3 = (0.0, 0.0, 0.0)
     rotation: Vector4 = (0.0, 0.0, 0.0, 1.0)
     scale: Vector3 = (1.0, 1.0, 1.0)
+    weights: list[float] = []
     name: str = ""
 
 

@@ -11,6 +11,7 @@ from moka.scene.lights import Light
 from moka.scene.transform import Transform
 
 if TYPE_CHECKING:
+    from moka.scene.morph_weights import MorphWeights
     from moka.scene.scene import Scene
 
 __all__ = ["SceneModel"]
@@ -21,7 +22,8 @@ class SceneModel:
 
     ``transform`` moves the whole; ``rows`` (N,) are the transform rows of
     the model's nodes; ``cameras`` and ``lights`` are those that its nodes
-    place. Made by :meth:`moka.Scene.add`.
+    place; ``morph_weights`` are the weights of its morph targets, None
+    without any. Made by :meth:`moka.Scene.add`.
     """
 
     def __init__(
@@ -44,6 +46,7 @@ class SceneModel:
             Light(model.lights[light], self.node(node))
             for node, light in layout.lights
         ]
+        self.morph_weights = _morph_weights(model)
         self._scene = scene
         self._visible = True
 
@@ -96,3 +99,11 @@ class SceneModel:
         )
         camera.name = camera.name or self.model.nodes.names[node]
         return camera
+
+
+def _morph_weights(model: Model) -> "MorphWeights | None":
+    if not any(mesh.target_count for mesh in model.meshes):
+        return None
+    from moka.scene.morph_weights import MorphWeights
+
+    return MorphWeights(model)

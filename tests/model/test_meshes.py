@@ -127,7 +127,8 @@ def test_a_primitive_without_positions_is_left_out_and_counted() -> None:
 
 
 def test_keeps_names_weights_and_materials() -> None:
-    model = load_model(glb(changed("meshes[0].weights", [0.5, 1])))
+    targets = changed("meshes[0].primitives[0].targets", [{"POSITION": 0}] * 2)
+    model = load_model(glb(changed("meshes[0].weights", [0.5, 1], targets)))
     (mesh,) = model.meshes
     assert (mesh.name, mesh.weights) == ("triangle", [0.5, 1.0])
     assert mesh.primitives[0].material is model.materials[0]
