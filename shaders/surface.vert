@@ -5,6 +5,9 @@
 in vec3 position;
 out vec3 surface_position;  // world space, relative to the camera
 flat out uint surface_material;
+#ifdef MOKA_OBJECT
+flat out uint surface_object;
+#endif
 
 #ifdef MOKA_VERTEX_NORMAL
 in vec3 normal;
@@ -33,6 +36,9 @@ centroid out vec4 surface_colour;  // as the normal
 void main() {
     surface_position = place_point(position);
     surface_material = instance_data.x;
+#ifdef MOKA_OBJECT
+    surface_object = instance_data.y;
+#endif
 #ifdef MOKA_VERTEX_NORMAL
     float handedness = instance_handedness();
     // Normalised here, so that a scaled object interpolates as it would

@@ -4,7 +4,7 @@ Reading the environment and decoding images run in worker threads while the
 render thread makes the context and compiles; they meet at the first frame.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.core.aov import parse_aovs
 from moka.core.errors import OptionError
 from moka.core.image import Image
 from moka.core.option_text import LARGEST_SIDE
@@ -38,7 +39,8 @@ class RenderRequest:
     :class:`moka.Model`, or None for the built-in scene. ``environment`` is a
     path, a built-in name or a :class:`moka.Environment`.
     ``environment_rotation`` is in radians about +Y. ``camera`` is what the
-    command line's ``--camera`` takes, or a :class:`moka.Camera`.
+    command line's ``--camera`` takes, or a :class:`moka.Camera`. ``aovs``
+    are names of :data:`moka.core.aov.AOVS`.
     """
 
     source: Any = None
@@ -50,6 +52,7 @@ class RenderRequest:
     size: tuple[int, int] = (1280, 720)
     settings: RenderSettings = field(default_factory=RenderSettings)
     backend: str = "auto"
+    aovs: tuple[str, ...] = ()
 
 
 def render(
@@ -74,6 +77,7 @@ def render(
     ibl_samples: int | None = None,
     reference_samples: int | None = None,
     max_error: float | None = None,
+    aov: str | Sequence[str] = (),
     backend: str = "auto",
     cache: bool = True,
 ) -> Image:
@@ -102,7 +106,11 @@ def render(
     the error of the former. ``ibl`` is how the environment lights:
     ``split-sum``; ``filtered``, with ``ibl_samples`` view-dependent samples
     a pixel; ``reference``, which integrates it until ``reference_samples``
-    or an estimated relative standard error of ``max_error``. With ``cache``
+    or an estimated relative standard error of ``max_error``. ``aov`` names
+    what else is wanted of the nearest surface of each pixel, any of
+    ``depth``, ``normal``, ``albedo``, ``roughness``, ``metallic``,
+    ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
+    :attr:`moka.Image.layers`, which an .exr file takes along. With ``cache``
     lighting that was preintegrated before is read from disk, and new one is
     written there; the picture is the same.
 
@@ -139,6 +147,7 @@ def render(
             size,
             settings,
             backend,
+            parse_aovs(aov),
         ),
         Statistics(),
         want_pixels=True,
@@ -228,6 +237,9 @@ def _render_with(
             renderer.draw(scene, camera, commands)
         display = renderer.read_display(commands) if want_display else None
         radiance = renderer.read_radiance(commands) if want_pixels else None
+        values = None
+        if request.aovs:
+            values = renderer.read_values(scene, camera, request.aovs, commands)
         work.append(device.submit(commands).wait())
         info = device.info
         for stage, seconds in device.stage_seconds().items():
@@ -242,7 +254,7 @@ def _render_with(
         for counters in work:
             for name in counters.__struct_fields__:
                 statistics.count(name, getattr(counters, name))
-        image = _image(request, radiance, display)
+        image = _image(request, radiance, display, values)
         if deliver is not None:
             deliver(image)
         if renderer.has_lighting_to_keep:
@@ -257,6 +269,7 @@ def _image(
     request: RenderRequest,
     radiance: "Readback | None",
     display: "Readback | None",
+    values: "Mapping[str, Readback] | None",
 ) -> Image:
     """What was read back, top row first."""
     pixels = None
@@ -267,11 +280,17 @@ def _image(
     if display is not None:
         assert display.data is not None
         shown = np.ascontiguousarray(display.data[::-1])
+    layers = None
+    if values is not None:
+        from moka.renderer.surface_values import unpack_values
+
+        layers = unpack_values(request.aovs, values)
     return Image(
         pixels,
         tone_map=request.settings.tone_map,
         exposure=request.settings.exposure,
         display=shown,
+        layers=layers,
     )
 
 

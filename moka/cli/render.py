@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from moka.core.aov import parse_aovs
 from moka.core.errors import OptionError
 from moka.core.option_text import count, number, size
 
@@ -165,6 +166,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="write half floats into .exr files",
     )
     add(
+        "--aov",
+        metavar="NAME,...",
+        default=(),
+        type=_aovs,
+        help="extra layers of an .exr: depth, normal, albedo, roughness, "
+        "metallic, emission, occlusion, uv, object-id",
+    )
+    add(
         "--stats",
         metavar="PATH.json",
         type=Path,
@@ -241,6 +250,8 @@ def _request(
         float_output=any(path.suffix.lower() == ".exr" for path in outputs),
     )
     _check_lighting(arguments, settings.ibl)
+    if arguments.aov and not settings.float_output:
+        raise OptionError("--aov: needs an output that ends in .exr")
     return RenderRequest(
         source=arguments.model,
         environment=arguments.environment,
@@ -251,6 +262,7 @@ def _request(
         size=arguments.size,
         settings=settings,
         backend=arguments.backend,
+        aovs=arguments.aov,
     )
 
 
@@ -285,6 +297,13 @@ def _check_outputs(outputs: list[Path], statistics: Path | None) -> None:
             raise OptionError(f"{path}: the folder {path.parent} is missing")
         if path.is_dir():
             raise OptionError(f"{path}: is a folder")
+
+
+def _aovs(text: str) -> tuple[str, ...]:
+    try:
+        return parse_aovs(text)
+    except OptionError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _suns(text: str) -> str | int:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.core.aov import exr_layer
 from moka.core.atomic_file import image_file
 from moka.core.colour import encode_srgb8
 from moka.core.errors import ImageFileError, OptionError
@@ -31,8 +32,8 @@ class Image:
     ``display`` is the picture as uint8 (H, W, 4) that the GPU already made
     with just these two, sRGB-encoded and with alpha not associated; one of
     the two may be missing where nobody needs it. ``layers`` are further
-    values that an EXR file takes along, by names as :mod:`moka.core.exr`
-    describes them.
+    values (H, W) or (H, W, C) that an EXR file takes along, by the names of
+    :data:`moka.core.aov.AOVS` or as :mod:`moka.core.exr` describes them.
     """
 
     def __init__(
@@ -119,7 +120,11 @@ class Image:
                 elif suffix == ".exr":
                     pixels = self.pixels
                     file = files.enter_context(image_file(path))
-                    store_exr(file, pixels, half=half, layers=self.layers)
+                    layers = {
+                        exr_layer(name): values
+                        for name, values in self.layers.items()
+                    }
+                    store_exr(file, pixels, half=half, layers=layers)
                 else:
                     raise ImageFileError(
                         f"{os.fspath(path)}: cannot write images of this "

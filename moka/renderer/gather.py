@@ -40,7 +40,7 @@ class DrawGatherer:
         self._blended = rows["blended"]
         self._instances = np.zeros(count, INSTANCE)
         self._instances["material"] = rows["material"]
-        self._instances["object"] = np.arange(count)
+        self._instances["object"] = drawables.object
         self._positions = np.zeros((count, 3))
         self._version = -1
 

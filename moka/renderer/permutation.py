@@ -85,7 +85,9 @@ class LightingDescription(Struct, frozen=True):
     With ``harmonics`` irradiance comes from nine coefficients, not a cube.
     ``light_capacity`` is 0 without punctual lights, else the power of two
     that holds them. ``ibl`` is how the environment lights. What the target
-    wants stands here too: ``float_target``, and ``logarithmic_depth``.
+    wants stands here too: ``float_target``, ``logarithmic_depth``, and the
+    groups of ``values`` that are drawn in the place of radiance, which
+    :mod:`moka.renderer.surface_values` names.
     """
 
     environment: bool
@@ -97,6 +99,7 @@ class LightingDescription(Struct, frozen=True):
     harmonics: bool = False
     ibl: str = "split-sum"
     logarithmic_depth: bool = False
+    values: tuple[str, ...] = ()
 
     def defines(self, features: Feature) -> dict[str, int]:
         """The defines for a material with ``features``."""
@@ -105,6 +108,15 @@ class LightingDescription(Struct, frozen=True):
             defines["MOKA_FLOAT_TARGET"] = 1
         if self.logarithmic_depth:
             defines["MOKA_LOGARITHMIC_DEPTH"] = 1
+        if self.values:
+            # Each group of values has a target of its own.
+            return defines | {
+                "MOKA_OBJECT": 1,
+                **{
+                    f"MOKA_VALUES_{_macro(group)}": target
+                    for target, group in enumerate(self.values)
+                },
+            }
         if Feature.UNLIT in features:
             return defines
         defines[f"MOKA_BRDF_{_macro(self.brdf)}"] = 1
@@ -156,10 +168,11 @@ class Permutation(Struct, frozen=True):
         if "MOKA_PUNCTUAL_LIGHTS" in defines:
             blocks += lights_layout(self.lighting.light_capacity).glsl
         names = " ".join(name.removeprefix("MOKA_") for name in defines)
+        kind = "surface_values" if self.lighting.values else "surface"
         return ProgramDescriptor(
             load_shader("surface.vert", defines, injected=FRAME.glsl),
-            load_shader("surface.frag", defines, injected=blocks),
-            f"surface ({names})",
+            load_shader(f"{kind}.frag", defines, injected=blocks),
+            f"{kind} ({names})",
         )
 
 

@@ -5,9 +5,11 @@ frame is array operations over the rows that are made here.
 """
 
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from moka.commands.descriptors import (
     BindGroupDescriptor,
@@ -123,6 +125,25 @@ class SceneMaterials:
                 use.slot, slots[use.slot], *images[1:]
             )
         return requests
+
+    def without_blending(self) -> "SceneMaterials":
+        """The same where a surface has to be there or not.
+
+        What is blended counts from half coverage on: glTF's default for the
+        cutoff of a mask, and so what the rows of these materials say.
+        """
+        opaque = copy(self)
+        opaque.descriptions = [
+            replace(
+                description,
+                features=description.features & ~Feature.ALPHA_BLEND
+                | Feature.ALPHA_MASK,
+            )
+            if description.is_blended
+            else description
+            for description in self.descriptions
+        ]
+        return opaque
 
     @property
     def has_lit(self) -> bool:

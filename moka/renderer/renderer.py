@@ -4,6 +4,7 @@
                   then blended back to front; linear, multisampled
     accumulation  of reference lighting: frames so far, averaged
     display pass  samples averaged, exposed, tone mapped, encoded
+    values pass   where AOVs are asked for: what surfaces are, unlit
 
 What does not change between frames is prepared once
 (:mod:`moka.renderer.prepared_scene`); a frame itself is array operations:
@@ -11,8 +12,8 @@ cull, key, gather (:mod:`moka.renderer.gather`).
 """
 
 import math
-from collections.abc import Hashable
-from typing import Any
+from collections.abc import Hashable, Iterable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,14 +48,19 @@ from moka.renderer.targets import Targets, make_targets
 from moka.renderer.textures import TexturePool
 from moka.renderer.view import View, look_through
 from moka.scene.camera import Camera
+from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from moka.renderer.surface_values import SurfaceValues, ValueTargets
 
 __all__ = ["Renderer"]
 
 PASS_SCENE = 1
 PASS_ACCUMULATE = 2
 PASS_DISPLAY = 3
-PASS_READ = 4
+PASS_VALUES = 4
+PASS_READ = 5
 
 # Points are drawn as squares of this part of the picture's height.
 _POINT_SIZE = 1 / 360
@@ -106,6 +112,7 @@ class Renderer:
         self._prepared: PreparedScene | None = None
         self._prepared_key: object = None
         self._gatherer: DrawGatherer
+        self._values: SurfaceValues | None = None
 
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
@@ -184,6 +191,64 @@ class Renderer:
         be recorded after :meth:`draw`.
         """
         return self._read(commands, self._current_targets.resolved, "f4")
+
+    def draw_values(
+        self,
+        scene: Scene,
+        camera: Camera,
+        names: Iterable[str],
+        commands: CommandList,
+    ) -> "ValueTargets":
+        """Record what the surfaces of ``scene`` are, without light.
+
+        ``names`` are of :data:`moka.core.aov.AOVS`. Returns the targets that
+        hold them until this is called again.
+        """
+        from moka.renderer.surface_values import SurfaceValues, groups_of
+
+        scene.update()
+        materials = self._describe(scene)
+        width, height = self.size
+        is_reversed = self.device.info.clip_control
+        view = look_through(camera, width / height, reversed_z=is_reversed)
+        if self._values is None:
+            self._values = SurfaceValues(
+                self.device,
+                self._frame,
+                self._programs,
+                self._geometry,
+                self._textures,
+            )
+        commands.fill_buffer(
+            self._frame,
+            self._frame_values(scene, view, np.empty(0, LIGHT)),
+            key=SortKey(PASS_VALUES),
+        )
+        return self._values.draw(
+            scene,
+            materials,
+            view,
+            np.flatnonzero(scene.visible(camera, width / height)),
+            groups_of(names),
+            self.size,
+            commands,
+            PASS_VALUES,
+        )
+
+    def read_values(
+        self,
+        scene: Scene,
+        camera: Camera,
+        names: Iterable[str],
+        commands: CommandList,
+    ) -> dict[str, Readback]:
+        """:meth:`draw_values`, and read them.
+
+        What arrives is for
+        :func:`moka.renderer.surface_values.unpack_values`.
+        """
+        targets = self.draw_values(scene, camera, names, commands)
+        return targets.read(commands, SortKey(PASS_READ))
 
     @property
     def is_complete(self) -> bool:

@@ -66,10 +66,11 @@ class Drawables:
     Made of the models' layouts and, for each, the transform rows of its
     nodes. ``primitives`` holds every primitive once; ``primitive`` (D,) is
     the position in it, ``row`` (D,) the row of the transform, ``owner`` (D,)
-    the position of the model. ``local_bounds`` and ``world_bounds`` are
-    float64 (D, 2, 3), least and greatest corner; ``mirrored`` (D,) tells
-    where the world matrix turns front faces clockwise. The last two are as
-    of the last :meth:`refresh`.
+    the position of the model. ``object`` (D,) is 1 and the number of the
+    node, counted on from model to model. ``local_bounds`` and
+    ``world_bounds`` are float64 (D, 2, 3), least and greatest corner;
+    ``mirrored`` (D,) tells where the world matrix turns front faces
+    clockwise. The last two are as of the last :meth:`refresh`.
     """
 
     def __init__(
@@ -88,6 +89,11 @@ class Drawables:
         )
         self.owner: Rows = np.repeat(
             np.arange(len(layouts)), [len(layout.node) for layout in layouts]
+        )
+        nodes = [len(layout.model.nodes) for layout in layouts]
+        first = 1 + np.cumsum([0, *nodes[:-1]], dtype=np.intp)
+        self.object: Rows = first[self.owner] + np.concatenate(
+            [none, *(layout.node for layout in layouts)]
         )
         self.local_bounds: Array = np.concatenate(
             [np.empty((0, 2, 3)), *(layout.bounds for layout in layouts)]

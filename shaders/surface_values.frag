@@ -1,0 +1,62 @@
+// What a surface is, instead of how it looks: one target for each four
+// values that are wanted (moka.renderer.surface_values names them).
+
+#include "include/material.glsl"
+#include "include/logarithmic_depth.glsl"
+#include "include/shading_normal.glsl"
+
+flat in uint surface_object;
+
+#ifdef MOKA_VALUES_NORMAL_DEPTH
+layout(location = MOKA_VALUES_NORMAL_DEPTH) out vec4 normal_depth;
+#endif
+#ifdef MOKA_VALUES_ALBEDO_ROUGHNESS
+layout(location = MOKA_VALUES_ALBEDO_ROUGHNESS) out vec4 albedo_roughness;
+#endif
+#ifdef MOKA_VALUES_EMISSION_METALNESS
+layout(location = MOKA_VALUES_EMISSION_METALNESS) out vec4 emission_metalness;
+#endif
+#ifdef MOKA_VALUES_UV_OCCLUSION_OBJECT
+layout(location = MOKA_VALUES_UV_OCCLUSION_OBJECT) out vec4 uv_occlusion_object;
+#endif
+
+// Along the view axis, positive in front of the camera. A perspective's
+// fourth row is that axis; parallel rays go along `eye`.
+float view_distance(vec3 point) {
+    vec4 axis = vec4(
+        clip_from_world[0].w, clip_from_world[1].w, clip_from_world[2].w,
+        clip_from_world[3].w);
+    return eye.w > 0.0
+        ? dot(axis, vec4(point, 1.0)) : -dot(eye.xyz, point);
+}
+
+void main() {
+#ifdef MOKA_LOGARITHMIC_DEPTH
+    write_depth();
+#endif
+    MaterialsRow row = material_row();
+    vec4 base = base_colour(row);
+#ifdef MOKA_ALPHA_MASK
+    if (base.a < row.alpha_cutoff) discard;
+#endif
+    vec3 packed_values = occlusion_roughness_metalness(row);
+#ifdef MOKA_VALUES_NORMAL_DEPTH
+    normal_depth = vec4(shading_normal(row), view_distance(surface_position));
+#endif
+#ifdef MOKA_VALUES_ALBEDO_ROUGHNESS
+    albedo_roughness = vec4(base.rgb, packed_values.y);
+#endif
+#ifdef MOKA_VALUES_EMISSION_METALNESS
+    emission_metalness = vec4(emission(row), packed_values.z);
+#endif
+#ifdef MOKA_VALUES_UV_OCCLUSION_OBJECT
+#if defined(MOKA_UV_0)
+    vec2 uv = surface_uv_0;
+#elif defined(MOKA_UV_1)
+    vec2 uv = surface_uv_1;
+#else
+    vec2 uv = vec2(0.0);
+#endif
+    uv_occlusion_object = vec4(uv, packed_values.x, float(surface_object));
+#endif
+}
