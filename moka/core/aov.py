@@ -1,5 +1,7 @@
 """Arbitrary output variables: what a picture can tell besides its colour."""
 
+from collections.abc import Iterable
+
 from msgspec import Struct
 
 from moka.core.errors import OptionError
@@ -43,19 +45,20 @@ AOVS = {
 }
 
 
-def parse_aovs(names: str | tuple[str, ...] | list[str]) -> tuple[str, ...]:
+def parse_aovs(names: str | Iterable[str]) -> tuple[str, ...]:
     """The names of AOVs, from a list or a text with commas, each once.
 
     Raises OptionError for a name that is unknown.
     """
     if isinstance(names, str):
         names = [name.strip() for name in names.split(",")]
-    for name in names:
+    wanted = tuple(dict.fromkeys(names))
+    for name in wanted:
         if name not in AOVS:
             raise OptionError(
                 f"AOV: {name!r} is unknown; choose from {', '.join(AOVS)}"
             )
-    return tuple(dict.fromkeys(names))
+    return wanted
 
 
 def exr_layer(name: str) -> str:
