@@ -24,7 +24,7 @@ from moka.commands.sort_key import SortKey
 from moka.core.aov import AOVS
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
-from moka.lighting.preintegration import EnvironmentMaps
+from moka.lighting.environment_maps import EnvironmentMaps
 from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.permutation import LightingDescription
