@@ -49,7 +49,8 @@ class Material(Struct, frozen=True, eq=False):
     Factors are linear Rec.709; ``emissive_factor`` already holds the
     strength of KHR_materials_emissive_strength. Base colour and emissive
     textures are sRGB-encoded, the others are data: metalness is blue and
-    roughness green of one texture, occlusion is red.
+    roughness green of one texture, occlusion is red. ``animated`` names what
+    animations change of it, such as ``normal_texture.offset``.
     """
 
     name: str = ""
@@ -68,6 +69,7 @@ class Material(Struct, frozen=True, eq=False):
     alpha_cutoff: float = 0.5
     double_sided: bool = False
     unlit: bool = False
+    animated: frozenset[str] = frozenset()
 
     @property
     def textures(self) -> tuple[Texture, ...]:

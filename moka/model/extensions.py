@@ -6,6 +6,7 @@ from moka.model.uri import quote
 __all__ = ["SUPPORTED_EXTENSIONS", "check_required", "unsupported_extensions"]
 
 SUPPORTED_EXTENSIONS: dict[str, str] = {
+    "KHR_animation_pointer": "animated materials, lights and cameras",
     "KHR_lights_punctual": "directional, point and spot lights",
     "KHR_materials_emissive_strength": "emission beyond 1",
     "KHR_materials_unlit": "materials of constant radiance",

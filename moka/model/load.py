@@ -1,5 +1,7 @@
 """Loading a glTF model: the parts are read by the modules next to this."""
 
+from typing import TYPE_CHECKING
+
 from moka.model.cameras import read_cameras
 from moka.model.extensions import check_required, unsupported_extensions
 from moka.model.lights import read_lights
@@ -8,6 +10,9 @@ from moka.model.nodes import NodeTree, read_nodes
 from moka.model.read_materials import read_materials
 from moka.model.read_meshes import read_meshes
 from moka.model.source import GltfSource, ModelSource, open_source
+
+if TYPE_CHECKING:
+    from moka.model.animation import Animation
 
 __all__ = ["load_model"]
 
@@ -26,6 +31,16 @@ def load_model(source: ModelSource) -> Model:
     materials = read_materials(opened)
     lights = read_lights(opened)
     nodes = read_nodes(opened, len(lights))
+    animations: list[Animation] = []
+    rest_pose, still = None, 0
+    if document.animations:
+        from moka.model.animated_materials import marked_materials
+        from moka.model.read_animations import read_animations
+
+        animations, rest_pose, still = read_animations(
+            opened, nodes, len(lights)
+        )
+        materials = marked_materials(materials, animations)
     path = opened.path
     model = Model(
         name=path.stem if path else "",
@@ -39,7 +54,9 @@ def load_model(source: ModelSource) -> Model:
         scene_names=[scene.name for scene in document.scenes] or [""],
         extensions=tuple(sorted(set(document.extensions_used))),
         unsupported_extensions=unsupported_extensions(opened),
-        omitted=_omitted(opened),
+        omitted=_omitted(opened, still),
+        animations=animations,
+        rest_pose=rest_pose,
     )
     if document.scene is not None:
         opened.check_index(
@@ -66,7 +83,7 @@ def _read_scenes(source: GltfSource, nodes: NodeTree) -> list[list[int]]:
     return scenes
 
 
-def _omitted(source: GltfSource) -> dict[str, int]:
+def _omitted(source: GltfSource, still_channels: int) -> dict[str, int]:
     """What the document holds and moka does not draw, with its number."""
     document = source.document
     primitives = [
@@ -74,7 +91,7 @@ def _omitted(source: GltfSource) -> dict[str, int]:
     ]
     counts = {
         "skins": len(document.skins),
-        "animations": len(document.animations),
+        "animation channels": still_channels,
         "morph targets": sum(len(each.targets) for each in primitives),
         "primitives without positions": sum(
             "POSITION" not in each.attributes for each in primitives

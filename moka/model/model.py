@@ -1,6 +1,7 @@
 """A model: what a glTF file says, on the CPU."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
@@ -13,6 +14,9 @@ from moka.model.cameras import CameraDescription
 from moka.model.lights import PunctualLight
 from moka.model.mesh import Mesh
 from moka.model.nodes import NodeTree
+
+if TYPE_CHECKING:
+    from moka.model.animation import Animation, RestPose
 
 __all__ = ["Model"]
 
@@ -27,6 +31,8 @@ class Model(Struct, eq=False):
     from memory. ``extensions`` are those that the file uses,
     ``unsupported_extensions`` the optional ones among them that moka leaves
     out, ``omitted`` counts other things that it does not draw, by name.
+    ``rest_pose`` is where nodes are that ``animations`` move; without it
+    their matrices are taken apart.
     """
 
     name: str
@@ -42,6 +48,8 @@ class Model(Struct, eq=False):
     extensions: tuple[str, ...] = ()
     unsupported_extensions: tuple[str, ...] = ()
     omitted: dict[str, int] = {}
+    animations: "list[Animation]" = []
+    rest_pose: "RestPose | None" = None
 
     def instances(self, scene: int | None = None) -> Placements:
         """Rows of nodes that show a mesh, and the indices of their meshes.

@@ -16,10 +16,10 @@ from moka.material.material import (
 )
 from moka.model import schema
 from moka.model.images import ImageReader, sampler_descriptor
-from moka.model.schema import Vector2, read_extension
+from moka.model.schema import Vector2, Vector3, read_extension
 from moka.model.source import GltfSource
 
-__all__ = ["read_materials"]
+__all__ = ["emission_of", "read_materials"]
 
 # What vertices carry: TEXCOORD_0 and TEXCOORD_1.
 _UV_SETS = 2
@@ -50,6 +50,24 @@ def read_materials(source: GltfSource) -> list[Material]:
     ]
 
 
+def emission_of(source: GltfSource, index: int) -> tuple[Vector3, float]:
+    """Emissive factor and strength of a material, which are one in ours."""
+    material = source.document.materials[index]
+    return _emission(source, f"materials[{index}]", material)
+
+
+def _emission(
+    source: GltfSource, path: str, material: schema.Material
+) -> tuple[Vector3, float]:
+    red, green, blue = (max(0.0, each) for each in material.emissive_factor)
+    name = "KHR_materials_emissive_strength"
+    emission = read_extension(
+        material, name, _EmissiveStrength, source.where, path
+    )
+    strength = 1.0 if emission is None else emission.emissive_strength
+    return (red, green, blue), strength
+
+
 def _read_material(
     source: GltfSource,
     images: ImageReader,
@@ -67,9 +85,7 @@ def _read_material(
     pbr = material.pbr_metallic_roughness or schema.PbrMetallicRoughness()
     normal = material.normal_texture
     occlusion = material.occlusion_texture
-    emission = extension("KHR_materials_emissive_strength", _EmissiveStrength)
-    strength = 1.0 if emission is None else emission.emissive_strength
-    red, green, blue = material.emissive_factor
+    (red, green, blue), strength = _emission(source, path, material)
     return Material(
         name=material.name,
         base_colour_factor=_clamped_colour(pbr.base_color_factor),
@@ -80,9 +96,9 @@ def _read_material(
             1.0 if occlusion is None else _clamp(occlusion.strength)
         ),
         emissive_factor=(
-            max(0.0, red) * strength,
-            max(0.0, green) * strength,
-            max(0.0, blue) * strength,
+            red * strength,
+            green * strength,
+            blue * strength,
         ),
         base_colour_texture=texture(
             "pbrMetallicRoughness.baseColorTexture", pbr.base_color_texture

@@ -40,6 +40,7 @@ __all__ = [
     "Texture",
     "TextureInfo",
     "decode_document",
+    "decode_part",
     "read_extension",
 ]
 
@@ -215,7 +216,7 @@ class Material(Property):
 
 
 class Document(Property):
-    """A whole glTF file. Skins and animations are only counted."""
+    """A whole glTF file; what not every picture needs is decoded later."""
 
     asset: Asset
     extensions_used: list[str] = []
@@ -260,6 +261,19 @@ def decode_document(text: bytes | memoryview, where: str) -> Document:
         raise ModelError(f"{where}: the JSON is nested too deeply") from error
     except msgspec.DecodeError as error:
         raise ModelError(f"{where}: {_lower(str(error))}") from error
+
+
+def decode_part(
+    raw: msgspec.Raw, type_: type[_Type], where: str, path: str
+) -> _Type:
+    """A part at JSON ``path`` that the document keeps undecoded.
+
+    Raises ModelError when it does not look like ``type_``.
+    """
+    try:
+        return msgspec.json.decode(raw, type=type_)
+    except msgspec.ValidationError as error:
+        raise _located(where, path, error) from error
 
 
 def read_extension(

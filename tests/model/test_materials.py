@@ -325,8 +325,6 @@ class TestExtensions:
         )
         assert model.unsupported_extensions == ()
 
-    def test_skins_and_animations_are_counted(self) -> None:
-        model = self.load(
-            skins=[{"joints": [0]}] * 2, animations=[{"anything": [1, {}]}]
-        )
-        assert model.omitted == {"skins": 2, "animations": 1}
+    def test_skins_are_counted(self) -> None:
+        model = self.load(skins=[{"joints": [0]}] * 2)
+        assert model.omitted == {"skins": 2}
