@@ -1,19 +1,24 @@
 // The directional albedo of the specular lobe, split for any Fresnel term.
 //
-// x is n.v, y is roughness, both at texel centres. Red is the scale of f0
-// and green that of f90 (Karis 2013, equation 8): the lobe reflects
+// x is n.v, y is roughness, see include/brdf_table.glsl. Red is the scale of
+// f0 and green that of f90 (Karis 2013, equation 8): the lobe reflects
 // f0 * red + f90 * green of uniform light.
 
 #include "include/brdf.glsl"
+#include "include/brdf_table.glsl"
 #include "include/sampling.glsl"
 
-in vec2 uv;
+// A mirror's lobe has no width and 0/0 for a density. This one is narrow
+// against n.v wherever that is at least its own least value.
+const float NARROWEST_ALPHA = 1e-6;
+
 out vec4 table;
 
 void main() {
-    float n_dot_v = uv.x;
-    float roughness = uv.y;
-    float alpha = roughness * roughness;
+    vec2 entry = table_entry(gl_FragCoord.xy, float(MOKA_TABLE_SIZE));
+    float n_dot_v = clamp_n_dot_v(entry.x);
+    float roughness = entry.y;
+    float alpha = max(roughness * roughness, NARROWEST_ALPHA);
     vec3 v = vec3(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     // D / pdf for visible normals, apart from D itself, is G1's denominator.
     float squared = alpha * alpha;
@@ -36,6 +41,7 @@ void main() {
         float weight = lobe / d * n_dot_l * view;
         sum += weight * vec2(1.0, fresnel_schlick(v_dot_h, 0.0, 1.0));
     }
-    sum /= float(MOKA_SAMPLE_COUNT);
+    // Rounding may not make light: no lobe reflects more than it gets.
+    sum /= max(float(MOKA_SAMPLE_COUNT), sum.x);
     table = vec4(sum.x - sum.y, sum.y, 0.0, 1.0);
 }

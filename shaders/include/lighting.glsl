@@ -2,6 +2,7 @@
 // injected.
 
 #include "include/brdf.glsl"
+#include "include/brdf_table.glsl"
 #include "include/diffuse.glsl"
 #include "include/direction.glsl"
 #include "include/environment.glsl"
@@ -38,7 +39,9 @@ Surface make_surface(
     surface.normal = normal;
     surface.view = view;
 #ifdef MOKA_BRDF_TABLE
-    vec2 place = vec2(clamp_n_dot_v(dot(normal, view)), roughness);
+    vec2 place = table_place(
+        clamp_n_dot_v(dot(normal, view)), roughness,
+        float(textureSize(brdf_table, 0).x));
     surface.table = textureLod(brdf_table, place, 0.0).rg;
 #else
     surface.table = vec2(1.0, 0.0);

@@ -19,14 +19,22 @@ BRDFS = ("GLTF", "KARIS", "BLINN_PHONG")
 @cache
 def table(brdf: str) -> np.ndarray:
     """Rows of roughness, columns of n.v, then scale and bias."""
-    defines = {f"MOKA_BRDF_{brdf}": 1, "MOKA_SAMPLE_COUNT": SAMPLES}
+    defines = {
+        f"MOKA_BRDF_{brdf}": 1,
+        "MOKA_SAMPLE_COUNT": SAMPLES,
+        "MOKA_TABLE_SIZE": SIZE,
+    }
     texels = gpu().draw("brdf_table.frag", (SIZE, SIZE), defines=defines)
     return texels[..., :2].astype(float)
 
 
 def expected(brdf: str, n_dot_v, roughness) -> np.ndarray:
+    """A view and a lobe of nothing are replaced, as in the shader."""
+    n_dot_v, roughness = np.maximum(n_dot_v, 1e-4), np.maximum(roughness, 1e-4)
     nodes = 24  # good to 5e-4
     if brdf == "BLINN_PHONG":
+        # Of a larger exponent the power has no digits left.
+        roughness = np.maximum(roughness, 1e-3)
         return oracle.table_of_blinn_phong(n_dot_v, roughness, nodes)
     visibility = {
         "GLTF": oracle.smith_correlated,
@@ -36,8 +44,8 @@ def expected(brdf: str, n_dot_v, roughness) -> np.ndarray:
 
 
 def bilinear(texels: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    column, row = x * SIZE - 0.5, y * SIZE - 0.5
-    i, j = np.floor(column).astype(int), np.floor(row).astype(int)
+    column, row = x * (SIZE - 1), y * (SIZE - 1)
+    i, j = (np.minimum(place.astype(int), SIZE - 2) for place in (column, row))
     s, t = (column - i)[:, None], (row - j)[:, None]
     low = texels[j, i] * (1.0 - s) + texels[j, i + 1] * s
     high = texels[j + 1, i] * (1.0 - s) + texels[j + 1, i + 1] * s
@@ -54,11 +62,28 @@ def test_the_oracle_knows_what_a_white_furnace_returns():
 
 @pytest.mark.parametrize("brdf", BRDFS)
 def test_every_second_texel(brdf):
-    """x is n.v, y is roughness, both at texel centres."""
-    centres = ((np.arange(SIZE) + 0.5) / SIZE)[::2]
-    n_dot_v, roughness = np.meshgrid(centres, centres)
-    error = np.abs(table(brdf)[::2, ::2] - expected(brdf, n_dot_v, roughness))
+    """x is n.v, y is roughness, from 0 at the first to 1 at the last."""
+    entries = np.linspace(0.0, 1.0, SIZE)
+    kept = np.append(np.arange(0, SIZE, 2), SIZE - 1)
+    n_dot_v, roughness = np.meshgrid(entries[kept], entries[kept])
+    texels = table(brdf)[np.ix_(kept, kept)]
+    assert np.isfinite(table(brdf)).all()
+    error = np.abs(texels - expected(brdf, n_dot_v, roughness))
     assert error.max() <= TOLERANCE
+
+
+@pytest.mark.parametrize("brdf", ["GLTF", "KARIS"])
+def test_a_mirror_reflects_what_fresnel_says(brdf):
+    lost = (1.0 - np.linspace(0.0, 1.0, SIZE)) ** 5
+    exact = np.stack((1.0 - lost, lost), axis=-1)
+    # But for the first column, where no lobe is narrow.
+    assert np.abs(table(brdf)[0] - exact)[1:].max() < 2e-4
+
+
+def test_a_rough_metal_seen_face_on_reflects_all_it_should():
+    """Turquin's factor is 1 / (1 - ln 2), which a cut edge would miss."""
+    value = bilinear(table("GLTF"), np.ones(1), np.ones(1)).sum()
+    assert value == pytest.approx(1.0 - np.log(2.0), rel=5e-4)
 
 
 @pytest.mark.parametrize("brdf", BRDFS)
@@ -70,8 +95,11 @@ def test_between_texels(brdf):
     where n.v < 0.02, that is within 1.2 degrees of the silhouette.
     """
     generator = np.random.default_rng(5)
-    n_dot_v = generator.uniform(2.5 / SIZE, 1.0 - 0.51 / SIZE, 3000)
-    roughness = generator.uniform(0.51 / SIZE, 1.0 - 0.51 / SIZE, 3000)
+    n_dot_v = generator.uniform(0.02, 1.0, 3000)
+    roughness = generator.uniform(0.0, 1.0, 3000)
+    # Along the edges, where a table of cells has half a texel less.
+    n_dot_v[:500] = 1.0
+    roughness[500:1000], roughness[1000:1500] = 0.0, 1.0
     value = bilinear(table(brdf), n_dot_v, roughness)
     error = np.abs(value - expected(brdf, n_dot_v, roughness))
     assert error.max() <= TOLERANCE

@@ -35,7 +35,10 @@ PASSES = [
     ("tile_error.frag", ()),
     ("prefilter_specular.frag", ("MOKA_SAMPLE_COUNT",)),
     ("prefilter_irradiance.frag", ("MOKA_SAMPLE_COUNT",)),
-    *(("brdf_table.frag", ("MOKA_SAMPLE_COUNT", brdf)) for brdf in BRDFS),
+    *(
+        ("brdf_table.frag", ("MOKA_SAMPLE_COUNT", "MOKA_TABLE_SIZE", brdf))
+        for brdf in BRDFS
+    ),
     *(
         ("tone_map.frag", (tone_map, *gamma))
         for tone_map in TONE_MAPS

@@ -20,6 +20,7 @@ from tests.support.oracles.directions import (
 pytestmark = pytest.mark.gpu
 
 SIZE = 64
+AXIS = np.maximum(np.linspace(0.0, 1.0, SIZE), 1e-4)
 BRDFS = ("GLTF", "KARIS", "BLINN_PHONG")
 # Burley's original reflects too much by itself, see test_diffuse.
 DIFFUSES = ("LAMBERT", "OREN_NAYAR", "BURLEY")
@@ -32,14 +33,17 @@ ANGLES = "angles_between(vec3(0.0, 0.0, 1.0), v, l)"
 
 @cache
 def table(brdf: str) -> np.ndarray:
-    defines = {f"MOKA_BRDF_{brdf}": 1, "MOKA_SAMPLE_COUNT": 512}
+    defines = {
+        f"MOKA_BRDF_{brdf}": 1,
+        "MOKA_SAMPLE_COUNT": 512,
+        "MOKA_TABLE_SIZE": SIZE,
+    }
     return gpu().draw("brdf_table.frag", (SIZE, SIZE), defines=defines)[..., :2]
 
 
 def grid() -> tuple[np.ndarray, np.ndarray]:
-    """n.v and roughness of the table's texels."""
-    centres = (np.arange(SIZE) + 0.5) / SIZE
-    n_dot_v, roughness = np.meshgrid(centres, centres)
+    """n.v and roughness of the table's texels, as the shaders guard them."""
+    n_dot_v, roughness = np.meshgrid(AXIS, AXIS)
     return n_dot_v.ravel(), roughness.ravel()
 
 
@@ -108,7 +112,7 @@ def test_a_white_dielectric_returns_what_it_gets(brdf, diffuse, f0):
     )
     if diffuse == "BURLEY":
         # The published renormalisation is approximate, see test_diffuse.
-        assert returned.max() <= 1.017
+        assert returned.max() <= 1.031
     else:
         assert np.abs(returned - 1.0).max() <= 1e-5
 
@@ -119,7 +123,7 @@ def test_a_dome_of_lights_is_a_furnace(diffuse):
     l, weights = hemisphere(96, 96)  # noqa: E741
     defines = {f"MOKA_DIFFUSE_{diffuse}": 1, "MOKA_MULTISCATTER": 1}
     for row, column in ((30, 5), (30, 40), (50, 20), (63, 63), (63, 2)):
-        cosine, r = (column + 0.5) / SIZE, (row + 0.5) / SIZE
+        cosine, r = AXIS[column], AXIS[row]
         same = {
             "entry": np.tile(table("GLTF")[row, column], (len(l), 1)),
             "f0": np.full((len(l), 3), 0.04),

@@ -162,30 +162,40 @@ def diffuse_oracle(
 
 def table(brdf: str, size: int = 64) -> float:
     """Texels of the table, as many samples as the renderer takes."""
-    defines = {f"MOKA_BRDF_{brdf}": 1, "MOKA_SAMPLE_COUNT": 512}
-    value = gpu().draw("brdf_table.frag", (size, size), defines=defines)
-    centres = (np.arange(size) + 0.5) / size
-    n_dot_v, roughness = np.meshgrid(centres, centres)
+    value, n_dot_v, roughness = _table(brdf, size)
     visibility = (
         specular.smith_correlated
         if brdf == "GLTF"
         else specular.schlick_ggx_environment
     )
     expected = specular.table_of_microfacets(n_dot_v, roughness, visibility)
-    return absolute(value[..., :2], expected)
+    return absolute(value, expected)
+
+
+def _table(brdf: str, size: int) -> tuple[Array, Array, Array]:
+    """Entries (size, size, 2), and the n.v and roughness that they are of."""
+    defines = {
+        f"MOKA_BRDF_{brdf}": 1,
+        "MOKA_SAMPLE_COUNT": 512,
+        "MOKA_TABLE_SIZE": size,
+    }
+    texels = gpu().draw("brdf_table.frag", (size, size), defines=defines)
+    axis = np.linspace(0.0, 1.0, size)
+    # A mirror and a grazing view are replaced by nearly ones.
+    n_dot_v, roughness = np.meshgrid(
+        np.maximum(axis, 1e-4), np.maximum(axis, 1e-4)
+    )
+    return texels[..., :2], n_dot_v, roughness
 
 
 def white_furnace(size: int = 64) -> float:
     """True albedo of a white metal times the factor that makes it 1."""
-    defines = {"MOKA_BRDF_GLTF": 1, "MOKA_SAMPLE_COUNT": 512}
-    entries = gpu().draw("brdf_table.frag", (size, size), defines=defines)
-    centres = (np.arange(size) + 0.5) / size
-    n_dot_v, roughness = np.meshgrid(centres, centres)
+    entries, n_dot_v, roughness = _table("GLTF", size)
     scale = gpu().evaluate(
         "multiscatter_scale(vec3(1.0), entry).x",
         ("brdf", "multiscatter"),
         {"MOKA_MULTISCATTER": 1},
-        entry=entries[..., :2].reshape(-1, 2),
+        entry=entries.reshape(-1, 2),
     )
     true = specular.table_of_microfacets(
         n_dot_v.ravel(), roughness.ravel(), specular.smith_correlated
