@@ -36,6 +36,7 @@ ORDER = (
 
 # Who may import what; the patterns match module names.
 ONLY_IMPORTERS = {
+    "DracoPy": ("moka.model.*",),
     "OpenEXR": ("moka.core.*",),
     "PIL": ("moka.core.*",),
     "flip_evaluator": ("moka.bench.*",),
@@ -43,8 +44,10 @@ ONLY_IMPORTERS = {
     "glfw": ("moka.app.window*", "moka.backend.contexts*"),
     "imgui_bundle": ("moka.ui.*",),
     "matplotlib": ("moka.bench.*", "moka.survey.*"),
+    "meshopt": ("moka.model.*",),
     "moderngl": ("moka.backend.*",),
     "moderngl_window": ("moka.app.window*", "moka.backend.contexts*"),
+    "opengl_basisu": ("moka.core.*",),
     "pygltflib": ("moka.model.*",),
     "scipy": ("moka.bench.*", "moka.survey.*"),
 }

@@ -6,11 +6,13 @@ from moka.model.uri import quote
 __all__ = ["SUPPORTED_EXTENSIONS", "check_required", "unsupported_extensions"]
 
 SUPPORTED_EXTENSIONS: dict[str, str] = {
+    "EXT_meshopt_compression": "vertices and indices of meshoptimizer",
     "KHR_animation_pointer": "animated materials, lights and cameras",
     "KHR_lights_punctual": "directional, point and spot lights",
     "KHR_materials_emissive_strength": "emission beyond 1",
     "KHR_materials_unlit": "materials of constant radiance",
     "KHR_mesh_quantization": "vertex attributes of 8 and 16 bits",
+    "KHR_meshopt_compression": "the same, with a filter for colours",
     "KHR_texture_transform": "offset, rotation and scale of textures",
 }
 

@@ -25,6 +25,10 @@ def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
 
     Raises ModelError naming the JSON path of what is wrong.
     """
+    if any(view.extensions for view in source.document.buffer_views):
+        from moka.model.meshopt import decode_ahead
+
+        decode_ahead(source)
     accessors = AccessorReader(source)
     meshes = []
     for index, mesh in enumerate(source.document.meshes):

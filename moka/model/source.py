@@ -5,6 +5,7 @@ buffers and views, and errors that name the file and the JSON path.
 """
 
 import os
+import threading
 from pathlib import Path
 from typing import Protocol, TypeAlias
 
@@ -59,6 +60,8 @@ class GltfSource:
         self.folder = folder
         self._binary = binary
         self._buffers: dict[int, memoryview] = {}
+        self._lock = threading.Lock()
+        self._decoded: dict[int, memoryview] = {}
 
     def error(self, path: str, text: str) -> ModelError:
         """An error at JSON ``path``, to be raised by the caller."""
@@ -73,24 +76,41 @@ class GltfSource:
 
     def buffer(self, index: int) -> memoryview:
         """The bytes of a buffer, read once, when first asked for."""
-        data = self._buffers.get(index)
-        if data is None:
-            data = self._buffers[index] = self._read_buffer(index)
-        return data
+        # Views are decoded in several threads.
+        with self._lock:
+            data = self._buffers.get(index)
+            if data is None:
+                data = self._buffers[index] = self._read_buffer(index)
+            return data
 
     def view(self, index: int) -> memoryview:
-        """The bytes of a buffer view; raises ModelError if it has too few."""
-        path = f"bufferViews[{index}]"
+        """The bytes of a buffer view, decoded once if it is compressed.
+
+        Raises ModelError if it has too few, or cannot be decoded.
+        """
         view = self.document.buffer_views[index]
+        if view.extensions is not None:
+            decoded = self._decoded.get(index) or self._decode(index)
+            if decoded is not None:
+                return decoded
+        path = f"bufferViews[{index}]"
+        return self.range(path, view.buffer, view.byte_offset, view.byte_length)
+
+    def range(
+        self, path: str, buffer: int, offset: int, length: int
+    ) -> memoryview:
+        """Some bytes of a buffer, which JSON ``path`` asks for.
+
+        Raises ModelError if it has too few.
+        """
         buffers = self.document.buffers
-        self.check_index(f"{path}.buffer", view.buffer, "buffers", len(buffers))
-        end = view.byte_offset + view.byte_length
-        size = buffers[view.buffer].byte_length
+        self.check_index(f"{path}.buffer", buffer, "buffers", len(buffers))
+        end, size = offset + length, buffers[buffer].byte_length
         if end > size:
             raise self.error(
-                path, f"ends at byte {end}, buffers[{view.buffer}] has {size}"
+                path, f"ends at byte {end}, buffers[{buffer}] has {size}"
             )
-        return self.buffer(view.buffer)[view.byte_offset : end]
+        return self.buffer(buffer)[offset:end]
 
     def uri_data(self, path: str, uri: str) -> bytes:
         """The data of a data URI that stands at JSON ``path``."""
@@ -105,6 +125,17 @@ class GltfSource:
             return resolve(uri, self.folder)
         except UriError as error:
             raise self.error(path, str(error)) from error
+
+    def _decode(self, index: int) -> memoryview | None:
+        """The bytes of a view if it is compressed, None if it is not."""
+        from moka.model.meshopt import decode_view, is_compressed
+
+        if not is_compressed(self.document.buffer_views[index]):
+            return None
+        decoded = decode_view(self, index)
+        if decoded is not None:
+            self._decoded[index] = decoded
+        return decoded
 
     def _read_buffer(self, index: int) -> memoryview:
         path = f"buffers[{index}]"
