@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.core.maths import Array, column_major
+
 if TYPE_CHECKING:
     import pygltflib
 
@@ -61,6 +63,27 @@ class BinaryWriter:
             )
         return self._accessors[key]
 
+    def joints(self, array: NDArray[np.float32]) -> int:
+        """The accessor of numbers of joints (N, 4), in 16 bits."""
+        key = id(array), "JOINTS"
+        if key not in self._accessors:
+            self._accessors[key] = self._accessor(
+                array.astype("<u2"),
+                _VERTICES,
+                componentType=_UNSIGNED_SHORT,
+                type="VEC4",
+            )
+        return self._accessors[key]
+
+    def matrices(self, array: Array) -> int:
+        """The accessor of matrices (N, 4, 4), [row, column], as float32."""
+        return self._accessor(
+            column_major(array).astype("<f4"),
+            None,
+            componentType=_FLOAT,
+            type="MAT4",
+        )
+
     def view(self, data: bytes | memoryview, target: int | None = None) -> int:
         """The buffer view of ``data``, aligned to 4 bytes."""
         import pygltflib
@@ -88,7 +111,7 @@ class BinaryWriter:
         self._gltf.set_binary_blob(bytes(self._data))
 
     def _accessor(
-        self, array: NDArray[Any], target: int, **properties: Any
+        self, array: NDArray[Any], target: int | None, **properties: Any
     ) -> int:
         import pygltflib
 

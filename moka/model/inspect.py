@@ -143,6 +143,9 @@ def _geometry_bytes(model: Model) -> int:
                 arrays[id(array)] = array.nbytes
             if primitive.indices is not None:
                 arrays[id(primitive.indices)] = primitive.indices.nbytes
+            for target in primitive.targets.deltas if primitive.targets else ():
+                for array in target.values():
+                    arrays[id(array)] = array.nbytes
     return sum(arrays.values())
 
 

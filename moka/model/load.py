@@ -41,12 +41,13 @@ def load_model(source: ModelSource) -> Model:
             opened, nodes, len(lights)
         )
         materials = marked_materials(materials, animations)
+    meshes = read_meshes(opened, materials)
     path = opened.path
     model = Model(
         name=path.stem if path else "",
         path=path,
         nodes=nodes,
-        meshes=read_meshes(opened, materials),
+        meshes=meshes,
         materials=materials,
         cameras=read_cameras(opened),
         lights=lights,
@@ -58,6 +59,11 @@ def load_model(source: ModelSource) -> Model:
         animations=animations,
         rest_pose=rest_pose,
     )
+    if document.skins:
+        from moka.model.skins import check_skinned, read_skins
+
+        model.skins = read_skins(opened, nodes)
+        check_skinned(opened, nodes, meshes, model.skins)
     if document.scene is not None:
         opened.check_index(
             "scene", document.scene, "scenes", len(document.scenes)
@@ -90,9 +96,7 @@ def _omitted(source: GltfSource, still_channels: int) -> dict[str, int]:
         primitive for mesh in document.meshes for primitive in mesh.primitives
     ]
     counts = {
-        "skins": len(document.skins),
         "animation channels": still_channels,
-        "morph targets": sum(len(each.targets) for each in primitives),
         "primitives without positions": sum(
             "POSITION" not in each.attributes for each in primitives
         ),

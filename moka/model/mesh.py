@@ -1,6 +1,7 @@
 """Meshes: primitives with their vertex attributes as NumPy arrays."""
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
@@ -10,9 +11,30 @@ from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
 from moka.material.material import Material
 
-__all__ = ["ATTRIBUTES", "TOPOLOGIES", "Bounds", "Mesh", "Primitive"]
+if TYPE_CHECKING:
+    from moka.model.morphs import MorphTargets
+
+__all__ = [
+    "ATTRIBUTES",
+    "INFLUENCES",
+    "INFLUENCE_SETS",
+    "TOPOLOGIES",
+    "Bounds",
+    "Mesh",
+    "Primitive",
+]
 
 Bounds = tuple[NDArray[np.float32], NDArray[np.float32]]
+
+# Sets of four joints each that a vertex can follow: with all other inputs of
+# a vertex they fill the 16 attributes that OpenGL promises.
+INFLUENCE_SETS = 3
+
+INFLUENCES = tuple(
+    f"{kind}_{number}"
+    for kind in ("JOINTS", "WEIGHTS")
+    for number in range(INFLUENCE_SETS)
+)
 
 # The attributes that moka reads and their components, in this order.
 ATTRIBUTES: dict[str, int] = {
@@ -22,6 +44,7 @@ ATTRIBUTES: dict[str, int] = {
     "TEXCOORD_0": 2,
     "TEXCOORD_1": 2,
     "COLOR_0": 4,
+    **dict.fromkeys(INFLUENCES, 4),
 }
 
 # The topologies in the order of glTF's modes 0 to 6.
@@ -42,9 +65,12 @@ class Primitive:
     ``attributes`` maps names of glTF to float32 arrays of one length:
     POSITION (N, 3) in metres, NORMAL (N, 3), TANGENT (N, 4) with the sign of
     the bitangent in w, TEXCOORD_0 and TEXCOORD_1 (N, 2) with v downwards,
-    COLOR_0 (N, 4) linear RGBA. Only POSITION is always there. Arrays read
-    from a file may be read-only, strided, and shared between primitives.
-    ``indices`` is uint32 (M,) or None, ``material`` None for glTF's default.
+    COLOR_0 (N, 4) linear RGBA, JOINTS_0 to JOINTS_2 (N, 4) numbers of joints
+    in a skin with WEIGHTS_0 to WEIGHTS_2 (N, 4), of which each vertex has 1.
+    Only POSITION is always there. Arrays read from a file may be read-only,
+    strided, and shared between primitives. ``indices`` is uint32 (M,) or
+    None, ``targets`` are morph targets or None, ``material`` is None for
+    glTF's default.
     ``vertex_count``, ``index_count`` and ``bounds``, the least and the
     greatest position, stay after :meth:`release`.
 
@@ -58,6 +84,7 @@ class Primitive:
         "index_count",
         "indices",
         "material",
+        "targets",
         "topology",
         "vertex_count",
     )
@@ -69,11 +96,13 @@ class Primitive:
         *,
         topology: Topology = Topology.TRIANGLES,
         material: Material | None = None,
+        targets: "MorphTargets | None" = None,
     ) -> None:
         if "POSITION" not in attributes:
             raise ModelError("a primitive needs the attribute POSITION")
         self.topology = topology
         self.material = material
+        self.targets = targets
         self.attributes: dict[str, NDArray[np.float32]] = {
             name: np.asarray(attributes[name], np.float32)
             for name in ATTRIBUTES
@@ -117,6 +146,11 @@ class Primitive:
         return max(0, count - 2)
 
     @property
+    def influence_sets(self) -> int:
+        """Sets of four joints that its vertices follow; 0 if it is rigid."""
+        return sum(name.startswith("JOINTS_") for name in self.attributes)
+
+    @property
     def size(self) -> int:
         """Bytes of the attributes and indices that are still held."""
         size = 0 if self.indices is None else self.indices.nbytes
@@ -131,10 +165,21 @@ class Primitive:
         copy.material = material
         return copy
 
+    def as_rigid(self) -> "Primitive":
+        """The same geometry, sharing its arrays, without joints."""
+        copy = self.with_material(self.material)
+        copy.attributes = {
+            name: array
+            for name, array in self.attributes.items()
+            if name not in INFLUENCES
+        }
+        return copy
+
     def release(self) -> None:
         """Drop the arrays, for instance once the GPU holds them."""
         self.attributes.clear()
         self.indices = None
+        self.targets = None
 
 
 class Mesh(Struct, eq=False):

@@ -17,6 +17,7 @@ from moka.model.nodes import NodeTree
 
 if TYPE_CHECKING:
     from moka.model.animation import Animation, RestPose
+    from moka.model.skins import Skin
 
 __all__ = ["Model"]
 
@@ -24,15 +25,15 @@ Placements = tuple[NDArray[np.int32], NDArray[np.int32]]
 
 
 class Model(Struct, eq=False):
-    """Meshes, materials, cameras and lights, and the nodes that place them.
+    """Meshes, materials, cameras, lights, and the nodes that place them.
 
     ``scenes`` are lists of rows of root nodes in ``nodes``; a file without
     scenes has one of all its roots. ``path`` is None for a model that came
     from memory. ``extensions`` are those that the file uses,
     ``unsupported_extensions`` the optional ones among them that moka leaves
     out, ``omitted`` counts other things that it does not draw, by name.
-    ``rest_pose`` is where nodes are that ``animations`` move; without it
-    their matrices are taken apart.
+    ``skins`` are what ``nodes.skins`` number. ``rest_pose`` is where nodes
+    are that ``animations`` move; without it their matrices are taken apart.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Model(Struct, eq=False):
     omitted: dict[str, int] = {}
     animations: "list[Animation]" = []
     rest_pose: "RestPose | None" = None
+    skins: "list[Skin]" = []
 
     def instances(self, scene: int | None = None) -> Placements:
         """Rows of nodes that show a mesh, and the indices of their meshes.

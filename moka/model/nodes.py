@@ -31,8 +31,8 @@ class NodeTree(Struct, eq=False):
     (N, 4, 4) matrices from a node's space to its parent's, indexed [row,
     column]; ``mesh``, ``camera`` and ``light`` what a node places, -1 for
     nothing; ``source`` the node's index in the file. All but ``names`` and
-    ``local`` are int32 (N,). ``weights`` are the weights of morph targets
-    that rows give to their mesh, for the rows that do.
+    ``local`` are int32 (N,). For the rows that have them: ``weights`` of
+    the morph targets of their mesh, ``skins`` that their mesh follows.
     """
 
     names: list[str]
@@ -43,6 +43,7 @@ class NodeTree(Struct, eq=False):
     light: Indices
     source: Indices
     weights: dict[int, list[float]] = {}
+    skins: dict[int, int] = {}
 
     def __len__(self) -> int:
         return len(self.names)
@@ -108,6 +109,7 @@ def read_nodes(source: GltfSource, light_count: int) -> NodeTree:
         light=read_node_lights(source, light_count)[order],
         source=order,
         weights=_weights(source, rows),
+        skins=_skins(source, rows),
     )
 
 
@@ -175,6 +177,21 @@ def _weights(source: GltfSource, rows: Indices) -> dict[int, list[float]]:
         )
         weights[int(rows[index])] = node.weights
     return weights
+
+
+def _skins(source: GltfSource, rows: Indices) -> dict[int, int]:
+    """Skins by row, for nodes that have a mesh to be moved by it."""
+    document = source.document
+    skins = {}
+    for index, node in enumerate(document.nodes):
+        if node.skin is None:
+            continue
+        path = f"nodes[{index}].skin"
+        source.check_index(path, node.skin, "skins", len(document.skins))
+        if node.mesh is None:
+            raise source.error(path, "moves a mesh, and the node has none")
+        skins[int(rows[index])] = node.skin
+    return skins
 
 
 def _local_matrices(source: GltfSource) -> Array:

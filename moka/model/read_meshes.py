@@ -10,13 +10,21 @@ from moka.core.errors import ModelError
 from moka.material.material import Material
 from moka.model import schema
 from moka.model.accessors import AccessorReader
-from moka.model.mesh import ATTRIBUTES, TOPOLOGIES, Mesh, Primitive
+from moka.model.mesh import (
+    ATTRIBUTES,
+    INFLUENCES,
+    TOPOLOGIES,
+    Mesh,
+    Primitive,
+)
 from moka.model.source import GltfSource
 
 __all__ = ["read_meshes"]
 
 _TYPES = {2: ("VEC2",), 3: ("VEC3",), 4: ("VEC4",)}
 _UNSIGNED_INT = 5125
+_FOLLOWING = ("JOINTS_", "WEIGHTS_")
+_PLAIN = tuple(name for name in ATTRIBUTES if name not in INFLUENCES)
 
 
 def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
@@ -61,7 +69,7 @@ def _read_primitive(
     primitive: schema.Primitive,
 ) -> Primitive:
     attributes = {}
-    for name in ATTRIBUTES:
+    for name in _PLAIN:
         index = primitive.attributes.get(name)
         if index is not None:
             attributes[name] = _read_attribute(
@@ -71,6 +79,17 @@ def _read_primitive(
     if "NORMAL" not in attributes:
         # Flat normals take their place, to which tangents do not belong.
         attributes.pop("TANGENT", None)
+    if any(name.startswith(_FOLLOWING) for name in primitive.attributes):
+        from moka.model.skins import read_influences
+
+        attributes |= read_influences(
+            source, accessors, path, primitive, len(attributes["POSITION"])
+        )
+    targets = None
+    if primitive.targets:
+        from moka.model.morphs import read_targets
+
+        targets = read_targets(source, accessors, path, primitive, attributes)
     indices = None
     if primitive.indices is not None:
         _accessor(source, f"{path}.indices", primitive.indices)
@@ -87,6 +106,7 @@ def _read_primitive(
             indices,
             topology=TOPOLOGIES[primitive.mode],
             material=material,
+            targets=targets,
         )
     except ModelError as error:
         raise source.error(path, str(error)) from error

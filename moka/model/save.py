@@ -2,11 +2,14 @@
 
 import math
 import os
+from collections.abc import Mapping
+from dataclasses import make_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import numpy as np
+from numpy.typing import NDArray
 
 from moka.core.errors import ModelError
 from moka.model.binary import BinaryWriter
@@ -20,6 +23,8 @@ from moka.version import __version__
 if TYPE_CHECKING:
     import pygltflib
 
+    from moka.model.skins import Skin
+
 __all__ = ["save_model"]
 
 _MODES = {topology: mode for mode, topology in enumerate(TOPOLOGIES)}
@@ -30,8 +35,8 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
     """Write ``model`` to ``path``: .glb, or .gltf with a .bin beside it.
 
     Geometry as float32, textures as embedded images, nodes as matrices,
-    cameras, punctual lights and scenes. What moka does not read of a file,
-    such as animations, is not written either. Raises ModelError if the
+    skins, morph targets, cameras, punctual lights and scenes. What moka does
+    not read of a file is not written either. Raises ModelError if the
     suffix is another, the geometry was released, a texture is neither PNG
     nor JPEG or the file cannot be written.
     """
@@ -79,6 +84,7 @@ def _document(model: Model) -> "pygltflib.GLTF2":
         nodes=_nodes(model),
     )
     binary = BinaryWriter(gltf)
+    gltf.skins = [_skin(skin, binary) for skin in model.skins]
     materials = MaterialWriter(gltf, binary)
     for material in model.materials:
         materials.material(material)
@@ -113,32 +119,65 @@ def _primitive(
         raise ModelError("the geometry was released and cannot be saved")
     material, indices = primitive.material, primitive.indices
     return pygltflib.Primitive(
-        attributes=pygltflib.Attributes(
-            **{
-                name: binary.attribute(array, name)
-                for name, array in primitive.attributes.items()
-            }
-        ),
+        attributes=_attributes(primitive.attributes, binary),
+        targets=[
+            _attributes(target, binary)
+            for target in (
+                primitive.targets.deltas if primitive.targets else ()
+            )
+        ],
         indices=None if indices is None else binary.indices(indices),
         mode=_MODES[primitive.topology],
         material=None if material is None else materials.material(material),
     )
 
 
+def _attributes(
+    arrays: Mapping[str, NDArray[np.float32]], binary: BinaryWriter
+) -> "pygltflib.Attributes":
+    import pygltflib
+
+    return pygltflib.Attributes(
+        **{
+            name: binary.joints(array)
+            if name.startswith("JOINTS")
+            else binary.attribute(array, name)
+            for name, array in arrays.items()
+        }
+    )
+
+
+def _skin(skin: "Skin", binary: BinaryWriter) -> "pygltflib.Skin":
+    import pygltflib
+
+    return pygltflib.Skin(
+        name=skin.name,
+        joints=skin.joints.tolist(),
+        inverseBindMatrices=binary.matrices(skin.inverse_bind),
+    )
+
+
 def _nodes(model: Model) -> list["pygltflib.Node"]:
     import pygltflib
 
+    # pygltflib's own nodes know no weights of morph targets.
+    node_type = make_dataclass(
+        "Node", [("weights", list, None)], bases=(pygltflib.Node,)
+    )
     tree = model.nodes
     identity = (tree.local == np.eye(4)).all(axis=(1, 2)).tolist()
     nodes = [
-        pygltflib.Node(
+        node_type(
             name=name,
             matrix=None if same else local.T.reshape(-1).tolist(),
             mesh=None if mesh < 0 else mesh,
+            skin=tree.skins.get(row),
+            weights=tree.weights.get(row),
             camera=None if camera < 0 else camera,
             extensions={} if light < 0 else {_LIGHTS: {"light": light}},
         )
-        for name, same, local, mesh, camera, light in zip(
+        for row, name, same, local, mesh, camera, light in zip(
+            range(len(tree)),
             tree.names,
             identity,
             tree.local,

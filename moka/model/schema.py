@@ -36,6 +36,7 @@ __all__ = [
     "Sampler",
     "Scene",
     "Size",
+    "Skin",
     "Sparse",
     "SparseIndices",
     "SparseValues",
@@ -132,12 +133,19 @@ class Mesh(Property):
 class Node(Property):
     children: list[Index] = []
     mesh: Index | None = None
+    skin: Index | None = None
     camera: Index | None = None
     matrix: Matrix4 | None = None
     translation: Vector3 = (0.0, 0.0, 0.0)
     rotation: Vector4 = (0.0, 0.0, 0.0, 1.0)
     scale: Vector3 = (1.0, 1.0, 1.0)
     weights: list[float] = []
+    name: str = ""
+
+
+class Skin(Property):
+    joints: Annotated[list[Index], Meta(min_length=1)]
+    inverse_bind_matrices: Index | None = None
     name: str = ""
 
 
@@ -235,7 +243,7 @@ class Document(Property):
     scene: Index | None = None
     scenes: list[Scene] = []
     textures: list[Texture] = []
-    skins: list[msgspec.Raw] = []
+    skins: list[Skin] = []
     animations: list[msgspec.Raw] = []
 
 

@@ -91,7 +91,13 @@ def with_tangents(primitive: Primitive, uv_set: int = 0) -> Primitive:
             np.where(upright, 1.0, -1.0),
         ]
     ).astype(np.float32)
-    return Primitive(attributes, indices, material=primitive.material)
+    targets = primitive.targets
+    return Primitive(
+        attributes,
+        indices,
+        material=primitive.material,
+        targets=None if targets is None else targets.of_vertices(vertex),
+    )
 
 
 @dataclass(slots=True)

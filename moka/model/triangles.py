@@ -58,7 +58,10 @@ def with_flat_normals(primitive: Primitive) -> Primitive:
         corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     )
     attributes["NORMAL"] = np.repeat(_unit_or_z(normals), 3, axis=0)
-    return Primitive(attributes, material=primitive.material)
+    targets = primitive.targets
+    if targets is not None:
+        targets = targets.without(("NORMAL", "TANGENT")).of_vertices(order)
+    return Primitive(attributes, material=primitive.material, targets=targets)
 
 
 def _unit_or_z(vectors: NDArray[np.float64]) -> NDArray[Any]:

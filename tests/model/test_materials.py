@@ -324,7 +324,3 @@ class TestExtensions:
             extensionsRequired=["KHR_mesh_quantization"],
         )
         assert model.unsupported_extensions == ()
-
-    def test_skins_are_counted(self) -> None:
-        model = self.load(skins=[{"joints": [0]}] * 2)
-        assert model.omitted == {"skins": 2}

@@ -135,12 +135,6 @@ def test_keeps_names_weights_and_materials() -> None:
     assert load({"POSITION": POSITIONS}).material is None
 
 
-def test_counts_morph_targets_as_not_drawn() -> None:
-    path = "meshes[0].primitives[0].targets"
-    model = load_model(glb(changed(path, [{"POSITION": 0}] * 3)))
-    assert model.omitted == {"morph targets": 3}
-
-
 @pytest.mark.parametrize(
     ("path", "value", "message"),
     [

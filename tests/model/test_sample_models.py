@@ -18,6 +18,7 @@ from moka.model import (
     triangle_corners,
     with_tangents,
 )
+from moka.model.morphs import MorphTargets
 
 pytestmark = pytest.mark.assets
 
@@ -84,8 +85,13 @@ def check_primitive(
     found: Primitive, gltf: pygltflib.GLTF2, wanted: pygltflib.Primitive
 ) -> None:
     assert found.topology is list(Topology)[wanted.mode]
+    weights = found.attributes.get("WEIGHTS_0")
     for name, array in found.attributes.items():
         expected = elements(gltf, getattr(wanted.attributes, name))
+        if name == "JOINTS_0":  # of those that move a vertex
+            expected = np.where(weights > 0, expected, 0)
+        elif name == "WEIGHTS_0":
+            expected = expected / expected.sum(axis=1, keepdims=True)
         np.testing.assert_allclose(
             array[:, : expected.shape[1]], expected, rtol=1e-6
         )
@@ -172,6 +178,21 @@ def same_model(first: Model, second: Model) -> None:
             assert (left.indices is None) == (right.indices is None)
             if left.indices is not None:
                 np.testing.assert_array_equal(left.indices, right.indices)
+            assert (left.targets is None) == (right.targets is None)
+            if left.targets is not None and right.targets is not None:
+                same_targets(left.targets, right.targets)
+    assert first.nodes.skins == second.nodes.skins
+    for skin, other in zip(first.skins, second.skins, strict=True):
+        assert skin.name == other.name
+        np.testing.assert_array_equal(skin.joints, other.joints)
+        np.testing.assert_array_equal(skin.inverse_bind, other.inverse_bind)
+
+
+def same_targets(first: MorphTargets, second: MorphTargets) -> None:
+    for one, two in zip(first.deltas, second.deltas, strict=True):
+        assert one.keys() == two.keys()
+        for name, array in one.items():
+            np.testing.assert_array_equal(array, two[name])
 
 
 def test_the_three_kinds_of_source_agree(
