@@ -44,7 +44,6 @@ from moka.renderer.textures import TexturePool, TextureRequest
 
 __all__ = [
     "LAYER_BACKGROUND",
-    "LAYER_RESOLVE",
     "PreparedScene",
     "SceneMaterials",
     "SharedBindings",
@@ -55,7 +54,6 @@ LAYER_OPAQUE = 0
 LAYER_MASK = 1
 LAYER_BACKGROUND = 2
 LAYER_BLENDED = 3
-LAYER_RESOLVE = 4
 
 _DEFAULT_MATERIAL = Material(name="glTF default")
 

@@ -1,9 +1,11 @@
 """The order of a frame: a scene becomes passes, packets and pixels.
 
-    scene pass    opaque, then masked, then the environment behind them,
-                  then blended back to front; linear, multisampled
-    accumulation  of reference lighting: frames so far, averaged
-    display pass  samples averaged, exposed, tone mapped, encoded
+    scene pass    opaque, then masked, then blended back to front; linear,
+                  multisampled
+    accumulation  of reference lighting, whose frames have the environment
+                  behind them: frames so far, averaged
+    display pass  samples averaged, the environment behind them; exposed,
+                  tone mapped, encoded
     values pass   where AOVs are asked for: what surfaces are, unlit
 
 What does not change between frames is prepared once
@@ -35,7 +37,6 @@ from moka.renderer.light_sources import LightSources, light_capacity
 from moka.renderer.permutation import FRAME, LightingDescription
 from moka.renderer.prepared_scene import (
     LAYER_BACKGROUND,
-    LAYER_RESOLVE,
     PreparedScene,
     SceneMaterials,
     SharedBindings,
@@ -44,7 +45,7 @@ from moka.renderer.progressive import Progressive
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.sky_map import SkyMap
-from moka.renderer.targets import Targets, make_targets
+from moka.renderer.targets import Targets
 from moka.renderer.textures import TexturePool
 from moka.renderer.view import View, look_through
 from moka.scene.camera import Camera
@@ -107,6 +108,8 @@ class Renderer:
             np.zeros(FRAME.size, np.uint8),
         )
         self._targets: Targets | None = None
+        # What the scene of the last frame has behind it, not drawn there.
+        self._sky_behind: Sky | None = None
         self._materials: SceneMaterials | None = None
         self._materials_key: object = None
         self._prepared: PreparedScene | None = None
@@ -190,7 +193,14 @@ class Renderer:
         Premultiplied by coverage; a background colour is not part of it. To
         be recorded after :meth:`draw`.
         """
-        return self._read(commands, self._current_targets.resolved, "f4")
+        targets = self._current_targets
+        key = SortKey(PASS_READ)
+        if targets.samples == 1 and self._sky_behind is None:
+            return self._read(commands, targets.scene, "f4")
+        self._screen.resolve(
+            commands.command_buffer(key), targets, self._sky_behind
+        )
+        return self._read(commands, targets.resolved, "f4")
 
     def draw_values(
         self,
@@ -392,8 +402,8 @@ class Renderer:
             if self._targets is not None:
                 self._screen.forget()
                 self._progressive.forget()
-                self._targets.destroy(self.device)
-            self._targets = make_targets(
+                self._targets.destroy()
+            self._targets = Targets(
                 self.device, self.size, samples, float_output=float_output
             )
         return self._targets
@@ -434,14 +444,13 @@ class Renderer:
                 scene.transforms, visible, view, states, PASS_SCENE
             )
         )
-        sky = self._sky(scene, view)
-        if targets.samples > 1:
-            key = SortKey(PASS_SCENE, LAYER_RESOLVE)
-            self._screen.resolve(commands, key, targets, sky)
-        elif sky is not None:
-            key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
-            self._screen.draw_background(commands, key, sky)
+        self._sky_behind = self._sky(scene, view)
         if self._accumulates:
+            # What is averaged over frames has its sky in every one of them.
+            if self._sky_behind is not None:
+                key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
+                self._screen.draw_background(commands, key, self._sky_behind)
+                self._sky_behind = None
             self._progressive.accumulate(
                 commands, SortKey(PASS_ACCUMULATE), targets
             )
@@ -511,6 +520,7 @@ class Renderer:
             commands,
             SortKey(PASS_DISPLAY),
             targets,
+            self._sky_behind,
             tone_map=self.settings.tone_map,
             exposure=self.settings.exposure,
             background=None if isinstance(colour, str) else colour,
