@@ -42,6 +42,7 @@ from moka.renderer.prepared_scene import (
     SharedBindings,
 )
 from moka.renderer.progressive import Progressive
+from moka.renderer.sampled_levels import StillPicture
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.sky_map import SkyMap
@@ -110,6 +111,7 @@ class Renderer:
         self._targets: Targets | None = None
         # What the scene of the last frame has behind it, not drawn there.
         self._sky_behind: Sky | None = None
+        self._still: StillPicture | None = None
         self._materials: SceneMaterials | None = None
         self._materials_key: object = None
         self._prepared: PreparedScene | None = None
@@ -133,13 +135,19 @@ class Renderer:
         """
         self._sources.keep()
 
-    def begin(self, scene: Scene) -> None:
+    def begin(self, scene: Scene, still: Camera | None = None) -> None:
         """Start to decode what ``scene`` samples, without waiting for it.
 
         :meth:`draw` does so too; calling this early overlaps decoding with
-        whatever the caller does before the first frame.
+        whatever the caller does before the first frame. With ``still``, a
+        camera, only what a picture through it shows: images of what it does
+        not see stay unopened, and textures lose the levels that are too fine
+        for it. A draw of another picture makes up for it.
         """
         scene.update()
+        self._still = None
+        if still is not None:
+            self._still = StillPicture(scene, still, self.size)
         self._describe(scene)
 
     def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
@@ -150,7 +158,7 @@ class Renderer:
         cannot be had.
         """
         scene.update()
-        materials = self._describe(scene)
+        materials = self._describe(scene, camera)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -217,7 +225,7 @@ class Renderer:
         from moka.renderer.surface_values import SurfaceValues, groups_of
 
         scene.update()
-        materials = self._describe(scene)
+        materials = self._describe(scene, camera)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -308,11 +316,22 @@ class Renderer:
             framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
         )
 
-    def _describe(self, scene: Scene) -> SceneMaterials:
-        key = (id(scene), scene.structure_version)
+    def _describe(
+        self, scene: Scene, camera: Camera | None = None
+    ) -> SceneMaterials:
+        """The materials of ``scene``, all unless ``camera`` is the still."""
+        if (
+            camera is not None
+            and self._still is not None
+            and not self._still.shows(scene, camera, self.size)
+        ):
+            self._still = None
+        key = (id(scene), scene.structure_version, self._still)
         if self._materials is None or self._materials_key != key:
+            self.statistics.count("textures_loaded", 0)
+            self.statistics.count("textures_reduced", 0)
             self._materials = SceneMaterials(
-                scene.drawables.primitives, self._textures
+                scene.drawables.primitives, self._textures, self._still
             )
             self._materials_key = key
             images = {
@@ -321,7 +340,6 @@ class Renderer:
                 for material in model.model.materials
                 for texture in material.textures
             }
-            self.statistics.count("textures_loaded", 0)
             self.statistics.set_count(
                 "textures_skipped", len(images - self._materials.sampled)
             )
