@@ -10,6 +10,7 @@ SUPPORTED_EXTENSIONS: dict[str, str] = {
     "EXT_texture_avif": "AVIF images",
     "EXT_texture_webp": "WebP images",
     "KHR_animation_pointer": "animated materials, lights and cameras",
+    "KHR_draco_mesh_compression": "triangles compressed by Draco",
     "KHR_lights_punctual": "directional, point and spot lights",
     "KHR_materials_emissive_strength": "emission beyond 1",
     "KHR_materials_unlit": "materials of constant radiance",
