@@ -1,0 +1,193 @@
+"""All channels of an animation sampled at once, whatever their number.
+
+Channels are grouped by what they move, their interpolation and how many
+numbers they have; a group's keyframes are one array. The keyframe before a
+time is found for all different sets of times by one binary search over one
+sorted array of integers::
+
+    bit 63          32 31                 0
+       +--------------+-------------------+
+       | set of times | bits of the time  |
+       +--------------+-------------------+
+
+The bits of float32 numbers from 0 on have the order of the numbers, so that
+the search is exact, and sets stay apart however long they last.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from moka.core.interpolation import hermite, lerp, slerp
+from moka.core.maths import Array, normalise
+from moka.model.animation import AnimationChannel, Interpolation, Property
+from moka.scene.forest import Rows
+
+__all__ = ["KeyframeSampler"]
+
+_ROTATION: Property = ("node", "rotation")
+_LATEST = float(np.finfo(np.float32).max)
+
+
+class KeyframeSampler:
+    """The keyframes of one animation, ready to be sampled.
+
+    ``places`` holds for each channel where its values belong in the column
+    of its property: one place, or as many as it moves weights.
+    """
+
+    def __init__(
+        self, channels: Sequence[AnimationChannel], places: Sequence[Rows]
+    ) -> None:
+        self._timeline = _Timeline([channel.times for channel in channels])
+        members = defaultdict(list)
+        for index, channel in enumerate(channels):
+            target = channel.target
+            key = (
+                (target.kind, target.property),
+                channel.interpolation,
+                channel.values.shape[-1],
+            )
+            members[key].append(index)
+        self._groups = [
+            _Group(
+                property_,
+                interpolation,
+                np.concatenate([places[index] for index in indices]),
+                self._timeline.numbers[indices],
+                _offsets(channels, indices, self._timeline),
+                np.concatenate([channels[index].values for index in indices]),
+            )
+            for (property_, interpolation, _), indices in members.items()
+        ]
+
+    def sample(self, time: float) -> Iterator[tuple[Property, Rows, Array]]:
+        """What every property is at ``time`` in seconds.
+
+        Properties, the places (P,) of their values in the property's column,
+        and the values, float64 (P, C). Before its first keyframe a channel
+        has the first value, after its last one the last (glTF 2.0, 3.11).
+        """
+        moment = self._timeline.locate(time)
+        for group in self._groups:
+            values = group.sample(moment)
+            yield (
+                group.property,
+                group.places,
+                values.reshape(len(group.places), -1),
+            )
+
+
+class _Moment(Struct, frozen=True):
+    """Where a time lies in each set of times (U,).
+
+    Rows of the keyframes around it, 0 to 1 between these, and the seconds
+    from one to the other.
+    """
+
+    before: Rows
+    after: Rows
+    fraction: Array
+    span: Array
+
+
+class _Timeline:
+    """Every different set of times, one behind the other.
+
+    ``numbers`` holds the set that each of the given ``times`` is, ``starts``
+    the row of the first time of each set.
+    """
+
+    def __init__(self, times: Sequence[NDArray[np.float32]]) -> None:
+        # By identity: what the file shares is one array.
+        number_of: dict[int, int] = {}
+        sets: list[NDArray[np.float32]] = []
+        numbers = []
+        for each in times:
+            if id(each) not in number_of:
+                number_of[id(each)] = len(sets)
+                sets.append(each)
+            numbers.append(number_of[id(each)])
+        counts = np.array([len(each) for each in sets], np.intp)
+        self.numbers: Rows = np.array(numbers, np.intp)
+        self._ends: Rows = np.cumsum(counts) - 1
+        self.starts: Rows = self._ends - counts + 1
+        # Adding 0 makes 0 of -0, whose bits are no small number.
+        joined = np.concatenate([np.zeros(0, np.float32), *sets]) + np.float32()
+        self._times: Array = joined.astype(np.float64)
+        self._prefix = np.arange(len(sets), dtype=np.uint64) << np.uint64(32)
+        self._keys = np.repeat(self._prefix, counts) | joined.view(np.uint32)
+
+    def locate(self, time: float) -> _Moment:
+        """The keyframes around ``time``, exact for float64 times."""
+        time = min(max(time, 0.0), _LATEST)
+        # The last float32 that is not later than it: no keyframe is between.
+        bound = np.float32(time)
+        if float(bound) > time:
+            bound = np.nextafter(bound, np.float32(0))
+        found = np.searchsorted(
+            self._keys,
+            self._prefix | np.uint64(bound.view(np.uint32)),
+            side="right",
+        )
+        before = np.maximum(found - 1, self.starts)
+        after = np.minimum(before + 1, self._ends)
+        start = self._times[before]
+        span = self._times[after] - start
+        fraction = np.zeros(len(span))
+        np.divide(time - start, span, out=fraction, where=span > 0)
+        return _Moment(before, after, np.maximum(fraction, 0), span)
+
+
+class _Group(Struct, frozen=True, eq=False):
+    """G channels that move one property in one way, by C numbers each.
+
+    ``sets`` (G,) are numbers of sets of times, ``offsets`` (G,) what to add
+    to a row of the timeline to get that of the channel's keyframe in
+    ``values``, float32 (K, C), or (K, 3, C) of cubic splines.
+    """
+
+    property: Property
+    interpolation: Interpolation
+    places: Rows
+    sets: Rows
+    offsets: Rows
+    values: NDArray[np.float32]
+
+    def sample(self, moment: _Moment) -> Array:
+        """The values (G, C) at a moment."""
+        turns = self.property == _ROTATION
+        before = self.offsets + moment.before[self.sets]
+        first = self.values[before].astype(np.float64)
+        if self.interpolation is Interpolation.STEP:
+            return normalise(first) if turns else first
+        after = self.offsets + moment.after[self.sets]
+        second = self.values[after].astype(np.float64)
+        fraction = moment.fraction[self.sets]
+        if self.interpolation is Interpolation.LINEAR:
+            if turns:
+                return slerp(normalise(first), normalise(second), fraction)
+            return lerp(first, second, fraction)
+        values = hermite(
+            first[:, 1],
+            first[:, 2],
+            second[:, 0],
+            second[:, 1],
+            fraction,
+            moment.span[self.sets],
+        )
+        return normalise(values) if turns else values
+
+
+def _offsets(
+    channels: Sequence[AnimationChannel],
+    indices: Sequence[int],
+    timeline: _Timeline,
+) -> Rows:
+    """From rows of the timeline to rows of a group's joined keyframes."""
+    counts = np.array([len(channels[index].times) for index in indices])
+    first = np.cumsum(counts) - counts
+    return np.asarray(first - timeline.starts[timeline.numbers[indices]])
