@@ -4,6 +4,7 @@ Reading the environment and decoding images run in worker threads while the
 render thread makes the context and compiles; they meet at the first frame.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from moka.model.model import Model
     from moka.scene.camera import Camera
     from moka.scene.scene import Scene
+    from moka.scene.scene_model import SceneModel
 
 __all__ = ["RenderRequest", "render", "render_request"]
 
@@ -40,8 +42,8 @@ class RenderRequest:
     path, a built-in name or a :class:`moka.Environment`.
     ``environment_rotation`` is in radians about +Y. ``camera`` is what the
     command line's ``--camera`` takes, or a :class:`moka.Camera`. ``aovs``
-    are names of :data:`moka.core.aov.AOVS`. ``full_textures`` keeps the
-    levels of textures that are too fine for the picture.
+    are names of :data:`moka.core.aov.AOVS`. ``animation`` is a name or a
+    position, None for the first one if there is any, ``time`` in seconds.
     """
 
     source: Any = None
@@ -54,7 +56,8 @@ class RenderRequest:
     settings: RenderSettings = field(default_factory=RenderSettings)
     backend: str = "auto"
     aovs: tuple[str, ...] = ()
-    full_textures: bool = False
+    time: float = 0.0
+    animation: str | int | None = None
 
 
 def render(
@@ -63,6 +66,8 @@ def render(
     environment: Any = "studio",
     size: tuple[int, int] = (1280, 720),
     camera: Any = None,
+    time: float = 0.0,
+    animation: str | int | None = None,
     background: Any = "environment",
     environment_rotation: float = 0.0,
     environment_intensity: float = 1.0,
@@ -80,7 +85,6 @@ def render(
     reference_samples: int | None = None,
     max_error: float | None = None,
     aov: str | Sequence[str] = (),
-    full_textures: bool = False,
     backend: str = "auto",
     cache: bool = True,
 ) -> Image:
@@ -94,7 +98,10 @@ def render(
     radiance multiplied by ``environment_intensity``. ``camera`` is a name or
     index of a camera in the file, ``orbit:YAW,PITCH[,DISTANCE]`` in degrees
     or a :class:`moka.Camera`; by default the file's first camera, else an
-    orbit that frames the model. ``background`` is ``environment``,
+    orbit that frames the model. An animated model has the pose of
+    ``animation``, a name or a position in ``Model.animations`` (by default
+    the first), at ``time`` seconds; an orbit frames it at 0 seconds.
+    ``background`` is ``environment``,
     ``transparent`` or ``#rrggbb``. ``exposure`` (EV) and ``tone_map`` are
     how the image shows itself; its pixels are neither exposed nor tone
     mapped. ``brdf`` is ``gltf`` (glTF 2.0 appendix B), ``karis`` or
@@ -113,10 +120,9 @@ def render(
     what else is wanted of the nearest surface of each pixel, any of
     ``depth``, ``normal``, ``albedo``, ``roughness``, ``metallic``,
     ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
-    :attr:`moka.Image.layers`, which an .exr file takes along. Without
-    ``full_textures`` mip levels that are too fine for the picture are left
-    out. With ``cache`` lighting that was preintegrated before is read from
-    disk, and new one is written there; the picture is the same.
+    :attr:`moka.Image.layers`, which an .exr file takes along. With ``cache``
+    lighting that was preintegrated before is read from disk, and new one is
+    written there; the picture is the same.
 
     Returns an :class:`moka.Image` of linear Rec.709 radiance, float32
     (height, width, 4), top row first.
@@ -152,7 +158,8 @@ def render(
             settings,
             backend,
             parse_aovs(aov),
-            full_textures,
+            time,
+            animation,
         ),
         Statistics(),
         want_pixels=True,
@@ -220,8 +227,11 @@ def _render_with(
         scene.background = request.background
         scene.environment_rotation = request.environment_rotation
         scene.environment_intensity = request.environment_intensity
-        scene.add(_load_model(request.source))
+        model = scene.add(_load_model(request.source))
+        # An orbit frames the start, and so is the same at every time.
+        _pose(model, request, 0.0)
         camera = _choose_camera(request, scene)
+        _pose(model, request, request.time)
     renderer = Renderer(
         device,
         request.size,
@@ -230,7 +240,7 @@ def _render_with(
         cache=DiskCache() if cache else None,
     )
     try:
-        renderer.begin(scene, None if request.full_textures else camera)
+        renderer.begin(scene)
         scene.environment = environment.result()
         commands = CommandList()
         renderer.draw(scene, camera, commands)
@@ -311,6 +321,15 @@ def _load_model(source: Any) -> "Model":
 
         source = asset_folder() / "demo.glb"
     return load_model(source)
+
+
+def _pose(model: "SceneModel", request: RenderRequest, time: float) -> None:
+    """Give the model the pose that is asked for; one that moves has one."""
+    if not math.isfinite(time):
+        raise OptionError("time: must be a finite number of seconds")
+    wanted = request.animation
+    if model.model.animations or wanted is not None:
+        model.animations.pose(0 if wanted is None else wanted, time)
 
 
 def _load_environment(

@@ -76,6 +76,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "orbit:YAW,PITCH[,DISTANCE] in degrees",
     )
     add(
+        "--time",
+        metavar="S",
+        type=number,
+        default=0.0,
+        help="seconds into the animation of an animated model (default: 0)",
+    )
+    add(
+        "--animation",
+        metavar="NAME|INDEX",
+        help="which animation poses the model (default: the first)",
+    )
+    add(
         "--exposure",
         metavar="EV",
         type=number,
@@ -174,11 +186,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "metallic, emission, occlusion, uv, object-id",
     )
     add(
-        "--full-textures",
-        action="store_true",
-        help="decode textures in full, also where the picture cannot show it",
-    )
-    add(
         "--stats",
         metavar="PATH.json",
         type=Path,
@@ -268,7 +275,8 @@ def _request(
         settings=settings,
         backend=arguments.backend,
         aovs=arguments.aov,
-        full_textures=arguments.full_textures,
+        time=arguments.time,
+        animation=arguments.animation,
     )
 
 

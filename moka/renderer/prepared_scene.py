@@ -21,7 +21,6 @@ from moka.commands.descriptors import (
     UniformBinding,
 )
 from moka.commands.handles import Handle
-from moka.core.encoded_image import EncodedImage
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
 from moka.lighting.brdf_table import TABLE_SAMPLER
@@ -36,20 +35,16 @@ from moka.material.description import (
     describe_material,
     texture_slots,
 )
-from moka.material.material import Material, Texture
+from moka.material.material import Material
 from moka.model.mesh import Primitive
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.material_table import MaterialTable
 from moka.renderer.permutation import LightingDescription, Permutation
-from moka.renderer.sampled_levels import SampledLevels, StillPicture
-from moka.renderer.textures import (
-    TexturePool,
-    TextureRequest,
-    texture_request,
-)
+from moka.renderer.textures import TexturePool, TextureRequest
 
 __all__ = [
     "LAYER_BACKGROUND",
+    "LAYER_RESOLVE",
     "PreparedScene",
     "SceneMaterials",
     "SharedBindings",
@@ -60,6 +55,7 @@ LAYER_OPAQUE = 0
 LAYER_MASK = 1
 LAYER_BACKGROUND = 2
 LAYER_BLENDED = 3
+LAYER_RESOLVE = 4
 
 _DEFAULT_MATERIAL = Material(name="glTF default")
 
@@ -80,32 +76,24 @@ _ROW = np.dtype(
 class SceneMaterials:
     """Descriptions of the primitives' materials, and their textures begun.
 
-    Made first, so that images decode while everything else goes on. With
-    ``picture`` only what it shows is there: ``drawn`` holds the positions
-    among ``primitives`` of those that the other lists are about.
+    Made first, so that images decode while everything else goes on.
     """
 
     def __init__(
-        self,
-        primitives: Sequence[Primitive],
-        textures: TexturePool,
-        picture: StillPicture | None = None,
+        self, primitives: Sequence[Primitive], textures: TexturePool
     ) -> None:
-        self.drawn: Sequence[int] = (
-            range(len(primitives)) if picture is None else picture.drawn
-        )
-        self.materials: list[Material] = []
+        self.materials = [
+            primitive.material or _DEFAULT_MATERIAL for primitive in primitives
+        ]
         self.descriptions: list[MaterialDescription] = []
+        # By identity: embedded images need not be hashed to be left out.
+        self.sampled: set[int] = set()
         self.requests: list[dict[str, TextureRequest]] = []
-        images: dict[TextureRequest, list[EncodedImage]] = {}
-        reads: dict[TextureRequest, list[tuple[int, Texture]]] = {}
         known: dict[
             tuple[Material, tuple[str, ...], object],
             tuple[MaterialDescription, dict[str, TextureRequest]],
         ] = {}
-        for index in self.drawn:
-            primitive = primitives[index]
-            material = primitive.material or _DEFAULT_MATERIAL
+        for primitive, material in zip(primitives, self.materials, strict=True):
             key = (material, tuple(primitive.attributes), primitive.topology)
             if key not in known:
                 description = describe_material(
@@ -113,22 +101,30 @@ class SceneMaterials:
                 )
                 known[key] = (
                     description,
-                    _requests(material, description, picture, images),
+                    self._request(material, description, textures),
                 )
             description, requests = known[key]
-            self.materials.append(material)
             self.descriptions.append(description)
             self.requests.append(requests)
-            slots = texture_slots(material)
-            for slot, request in requests.items():
-                reads.setdefault(request, []).append((index, slots[slot]))
-        for request, given in images.items():
-            levels = None
-            if picture is not None:
-                levels = SampledLevels(picture, reads[request])
-            textures.begin(request, given, levels)
-        # By identity: embedded images need not be hashed to be left out.
-        self.sampled = {id(each) for given in images.values() for each in given}
+
+    def _request(
+        self,
+        material: Material,
+        description: MaterialDescription,
+        textures: TexturePool,
+    ) -> dict[str, TextureRequest]:
+        slots = texture_slots(material)
+        packed = Feature.PACKED_OCCLUSION in description.features
+        requests = {}
+        for use in description.textures:
+            images = [slots[use.slot].image]
+            if packed and use.slot == "metallic_roughness":
+                images.append(slots["occlusion"].image)
+            self.sampled.update(map(id, images))
+            requests[use.slot] = textures.request(
+                use.slot, slots[use.slot], *images[1:]
+            )
+        return requests
 
     def without_blending(self) -> "SceneMaterials":
         """The same where a surface has to be there or not.
@@ -166,34 +162,6 @@ class SceneMaterials:
         )
 
 
-def _requests(
-    material: Material,
-    description: MaterialDescription,
-    picture: StillPicture | None,
-    images: dict[TextureRequest, list[EncodedImage]],
-) -> dict[str, TextureRequest]:
-    """The textures of a material by slot; their images join ``images``."""
-    slots = texture_slots(material)
-    packed = Feature.PACKED_OCCLUSION in description.features
-    requests = {}
-    for use in description.textures:
-        texture = slots[use.slot]
-        occlusion = (
-            slots["occlusion"].image
-            if packed and use.slot == "metallic_roughness"
-            else texture.image
-        )
-        request = texture_request(
-            use.slot, texture, occlusion, picture.number if picture else 0
-        )
-        given = [texture.image]
-        if request.occlusion is not None:
-            given.append(occlusion)
-        images.setdefault(request, given)
-        requests[use.slot] = request
-    return requests
-
-
 class SharedBindings(Struct, frozen=True):
     """What every surface's bind group holds besides its own."""
 
@@ -204,10 +172,7 @@ class SharedBindings(Struct, frozen=True):
 
 
 class PreparedScene:
-    """Rows of what each primitive binds; owns bind groups and pages.
-
-    The rows of primitives that the materials leave out stay empty.
-    """
+    """Rows of what each primitive binds; owns bind groups and pages."""
 
     def __init__(
         self,
@@ -232,9 +197,9 @@ class PreparedScene:
         ]
         meshes = geometry.meshes(
             [
-                (primitives[position], description.attributes)
-                for position, description in zip(
-                    materials.drawn, materials.descriptions, strict=True
+                (primitive, description.attributes)
+                for primitive, description in zip(
+                    primitives, materials.descriptions, strict=True
                 )
             ]
         )
@@ -265,7 +230,7 @@ class PreparedScene:
                 textures,
             )
             description = permutation.material
-            self.rows[materials.drawn[index]] = (
+            self.rows[index] = (
                 surfaces[index].index,
                 group.index,
                 meshes[index].index,

@@ -5,6 +5,8 @@ that moved are all that is computed.
 """
 
 from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,9 @@ from moka.model.mesh import Primitive
 from moka.model.model import Model
 from moka.scene.forest import Rows
 from moka.scene.transforms import TransformTree, check_affine
+
+if TYPE_CHECKING:
+    from moka.scene.clips import Clips
 
 __all__ = ["Drawables", "ModelLayout"]
 
@@ -58,6 +63,13 @@ class ModelLayout:
         self.bounds: Array = np.reshape(
             np.array(boxes, np.float64), (-1, 2, 3)
         )[self.primitive]
+
+    @cached_property
+    def clips(self) -> "Clips":
+        """The model's animations, as its copies share them."""
+        from moka.scene.clips import Clips
+
+        return Clips(self.model)
 
 
 class Drawables:

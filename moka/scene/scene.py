@@ -6,7 +6,7 @@ stand for rows of arrays, and the renderer reads the arrays. After
 each kind of change whether there was one.
 """
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -25,6 +25,9 @@ from moka.scene.lights import Light, pack_lights
 from moka.scene.scene_model import SceneModel
 from moka.scene.transform import Transform
 from moka.scene.transforms import TransformTree
+
+if TYPE_CHECKING:
+    from moka.scene.animation_player import AnimationPlayer
 
 __all__ = ["Scene"]
 
@@ -55,6 +58,7 @@ class Scene:
         self._models: dict[SceneModel, None] = {}  # A set that keeps order.
         self._model_rows: set[int] = set()  # Transforms that move models.
         self._lights: list[Light] = []
+        self._players: dict[SceneModel, AnimationPlayer] = {}
         # Layouts live as long as a copy of their model, whose id is the key.
         self._layouts: WeakValueDictionary[tuple[int, int], ModelLayout] = (
             WeakValueDictionary()
@@ -163,6 +167,7 @@ class Scene:
         """
         if isinstance(item, SceneModel) and item in self._models:
             del self._models[item]
+            self._players.pop(item, None)
             self.structure_version += 1
             rows = np.append(item.rows, item.transform.row)
             self._model_rows.difference_update(rows.tolist())
@@ -182,8 +187,28 @@ class Scene:
             raise OptionError(f"scene: {item!r} was not added to this scene")
         self.transforms.remove(rows)
 
+    def add_player(self, model: SceneModel, player: "AnimationPlayer") -> None:
+        """Let time pass for what plays a model's animations.
+
+        For :attr:`SceneModel.animations` alone.
+        """
+        self._players[model] = player
+
+    def animate(self, delta: float) -> None:
+        """Let ``delta`` seconds pass for all animations that play.
+
+        Nodes, weights, lights and cameras then are where these have them,
+        and may still be changed. The loop of :func:`moka.run` calls this
+        before each ``update``.
+        """
+        for player in self._players.values():
+            player.advance(delta)
+            player.apply()
+
     def update(self) -> None:
         """Bring all arrays up to date; costs nothing if nothing changed."""
+        for player in self._players.values():
+            player.apply()
         self.transforms.update()
         models = self._models
         if self._built[0] != self.structure_version:

@@ -11,6 +11,7 @@ from moka.scene.lights import Light
 from moka.scene.transform import Transform
 
 if TYPE_CHECKING:
+    from moka.scene.animation_player import AnimationPlayer
     from moka.scene.morph_weights import MorphWeights
     from moka.scene.scene import Scene
 
@@ -49,6 +50,7 @@ class SceneModel:
         self.morph_weights = _morph_weights(model)
         self._scene = scene
         self._visible = True
+        self._player: AnimationPlayer | None = None
 
     def __repr__(self) -> str:
         return f"<SceneModel {self.model.name!r}: {self.transform!r}>"
@@ -63,6 +65,16 @@ class SceneModel:
         if value != self._visible:
             self._visible = value
             self._scene.visibility_version += 1
+
+    @property
+    def animations(self) -> "AnimationPlayer":
+        """What plays the animations of the model; nothing plays at first."""
+        if self._player is None:
+            from moka.scene.animation_player import AnimationPlayer
+
+            self._player = AnimationPlayer(self, self.layout.clips)
+            self._scene.add_player(self, self._player)
+        return self._player
 
     def node(self, node: int | str) -> Transform:
         """The transform of a node, by its row in ``model.nodes`` or name.

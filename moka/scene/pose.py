@@ -1,0 +1,147 @@
+"""Poses: what all that a model's animations move is at one moment.
+
+A pose has a column for each property that any animation of the model moves,
+with a row for each thing of which it is moved. So two animations that move
+different things still have poses of one shape, and can be blended.
+"""
+
+from collections import defaultdict
+from typing import Any
+
+import numpy as np
+
+from moka.core.interpolation import lerp, slerp
+from moka.core.maths import Array, decompose
+from moka.material.material import Material, TextureTransform
+from moka.model.animation import AnimationTarget, Property, RestPose
+from moka.model.model import Model
+from moka.scene.forest import Rows
+from moka.scene.morph_weights import MorphWeights
+
+__all__ = ["Pose", "PoseLayout", "blended"]
+
+#: Columns float64 (N, C) by property.
+Pose = dict[Property, Array]
+
+_TRANSFORM = ("translation", "rotation", "scale")
+_LARGEST = float(np.finfo(np.float32).max)
+
+
+class PoseLayout:
+    """Which things have a row in which column of a model's poses.
+
+    ``things`` (N,) holds for each property, sorted, rows of nodes, positions
+    of materials, lights or cameras, and for weights positions in the values
+    of :class:`MorphWeights`. ``rest`` is the pose of the file when nothing
+    plays.
+    """
+
+    def __init__(self, model: Model) -> None:
+        weights = MorphWeights(model)
+        self._weights = weights
+        found: dict[Property, set[int]] = defaultdict(set)
+        for animation in model.animations:
+            for channel in animation.channels:
+                target = channel.target
+                found[target.kind, target.property].update(
+                    self._things(target).tolist()
+                )
+        moved = set().union(
+            *(found.pop(("node", name), ()) for name in _TRANSFORM)
+        )
+        self.things: dict[Property, Rows] = {
+            property_: np.array(sorted(things), np.intp)
+            for property_, things in found.items()
+        }
+        self.rest: Pose = {
+            property_: _rest(model, weights, property_, things)
+            for property_, things in self.things.items()
+        }
+        if moved:
+            # A node's matrix is made of all three, whichever of them move.
+            nodes = np.array(sorted(moved), np.intp)
+            parts = _rest_transforms(model, nodes)
+            for name, column in zip(_TRANSFORM, parts, strict=True):
+                self.things["node", name] = nodes
+                self.rest["node", name] = column
+
+    def places(self, target: AnimationTarget) -> Rows:
+        """The rows of a target in the column of its property."""
+        column = self.things[target.kind, target.property]
+        return np.searchsorted(column, self._things(target))
+
+    def _things(self, target: AnimationTarget) -> Rows:
+        if target.property != "weights":
+            return np.array([target.index], np.intp)
+        where = self._weights.slice_of(target.index)
+        all_of_node = np.arange(where.start, where.stop, dtype=np.intp)
+        if target.element is None:
+            return all_of_node
+        return all_of_node[[target.element]]
+
+
+def blended(first: Pose, second: Pose, weight: float) -> Pose:
+    """The pose between two of one model: ``first`` at 0, ``second`` at 1.
+
+    Rotations turn the shorter way, visibility is that of the nearer pose,
+    everything else goes straight.
+    """
+    result = {}
+    for property_, column in first.items():
+        along = np.broadcast_to(weight, len(column))
+        if property_ == ("node", "rotation"):
+            result[property_] = slerp(column, second[property_], along)
+        elif property_ == ("node", "visible"):
+            result[property_] = second[property_] if weight >= 0.5 else column
+        else:
+            result[property_] = lerp(column, second[property_], along)
+    return result
+
+
+def _rest_transforms(model: Model, nodes: Rows) -> tuple[Array, Array, Array]:
+    """Translations, rotations and scales of nodes as the file has them."""
+    parts = decompose(model.nodes.local[nodes])
+    known: RestPose | None = model.rest_pose
+    if known is not None:
+        given = np.isin(nodes, known.nodes)
+        source = np.searchsorted(known.nodes, nodes[given])
+        for part, name in zip(parts, _TRANSFORM, strict=True):
+            part[given] = getattr(known, name)[source]
+    return parts
+
+
+def _rest(
+    model: Model, weights: MorphWeights, property_: Property, things: Rows
+) -> Array:
+    """The column of a property when nothing plays."""
+    kind, name = property_
+    if name == "weights":
+        return weights.values[things, None].astype(np.float64)
+    if name == "visible":
+        return np.ones((len(things), 1))
+    owners: Any = {
+        "material": model.materials,
+        "light": model.lights,
+        "camera": [camera.projection for camera in model.cameras],
+    }[kind]
+    values = [
+        material_value(owners[thing], name)
+        if kind == "material"
+        else getattr(owners[thing], name)
+        for thing in things.tolist()
+    ]
+    # What has no end is as far as float32 goes, so that it can be blended.
+    column = np.minimum(np.array(values, np.float64), _LARGEST)
+    return column.reshape(len(things), -1)
+
+
+def material_value(material: Material, name: str) -> Any:
+    """A material's number or numbers of that name."""
+    if name == "emissive_strength":
+        return 1.0  # The factor holds it already.
+    owner, _, part = name.partition(".")
+    value = getattr(material, owner)
+    if not part:
+        return value
+    transform = value.transform if value is not None else None
+    return getattr(transform or TextureTransform(), part)
