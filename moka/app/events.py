@@ -11,7 +11,9 @@ from moka.app.keys import Key, Modifiers, MouseButton
 
 __all__ = [
     "CloseEvent",
+    "DropEvent",
     "Event",
+    "FocusEvent",
     "KeyEvent",
     "MouseButtonEvent",
     "MouseMoveEvent",
@@ -32,6 +34,20 @@ class ResizeEvent:
 
     width: int
     height: int
+
+
+@dataclass(frozen=True, slots=True)
+class FocusEvent:
+    """The window begins, or ceases, to get what is typed."""
+
+    focused: bool
+
+
+@dataclass(frozen=True, slots=True)
+class DropEvent:
+    """Files were dragged into the window and dropped there."""
+
+    paths: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +98,8 @@ class ScrollEvent:
 
 Event = (
     CloseEvent
+    | DropEvent
+    | FocusEvent
     | KeyEvent
     | MouseButtonEvent
     | MouseMoveEvent

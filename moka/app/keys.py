@@ -6,7 +6,13 @@ what a press means as text is a :class:`~moka.app.events.TextEvent`.
 
 from enum import Enum, IntFlag
 
-__all__ = ["Key", "Modifiers", "MouseButton"]
+__all__ = [
+    "GamepadAxis",
+    "GamepadButton",
+    "Key",
+    "Modifiers",
+    "MouseButton",
+]
 
 
 class MouseButton(Enum):
@@ -20,6 +26,37 @@ class MouseButton(Enum):
     BUTTON_6 = 6
     BUTTON_7 = 7
     BUTTON_8 = 8
+
+
+class GamepadButton(Enum):
+    """A button of a gamepad, by its place and not by what is printed on it."""
+
+    SOUTH = 0
+    EAST = 1
+    WEST = 2
+    NORTH = 3
+    LEFT_BUMPER = 4
+    RIGHT_BUMPER = 5
+    BACK = 6
+    START = 7
+    GUIDE = 8
+    LEFT_STICK = 9
+    RIGHT_STICK = 10
+    UP = 11
+    RIGHT = 12
+    DOWN = 13
+    LEFT = 14
+
+
+class GamepadAxis(Enum):
+    """An axis of a gamepad."""
+
+    LEFT_X = 0
+    LEFT_Y = 1
+    RIGHT_X = 2
+    RIGHT_Y = 3
+    LEFT_TRIGGER = 4
+    RIGHT_TRIGGER = 5
 
 
 class Modifiers(IntFlag):

@@ -42,8 +42,10 @@ class RenderRequest:
     path, a built-in name or a :class:`moka.Environment`.
     ``environment_rotation`` is in radians about +Y. ``camera`` is what the
     command line's ``--camera`` takes, or a :class:`moka.Camera`. ``aovs``
-    are names of :data:`moka.core.aov.AOVS`. ``animation`` is a name or a
-    position, None for the first one if there is any, ``time`` in seconds.
+    are names of :data:`moka.core.aov.AOVS`. ``full_textures`` keeps the
+    levels of textures that are too fine for the picture. ``animation`` is a
+    name or a position, None for the first one if there is any, ``time`` in
+    seconds.
     """
 
     source: Any = None
@@ -56,6 +58,7 @@ class RenderRequest:
     settings: RenderSettings = field(default_factory=RenderSettings)
     backend: str = "auto"
     aovs: tuple[str, ...] = ()
+    full_textures: bool = False
     time: float = 0.0
     animation: str | int | None = None
 
@@ -85,6 +88,7 @@ def render(
     reference_samples: int | None = None,
     max_error: float | None = None,
     aov: str | Sequence[str] = (),
+    full_textures: bool = False,
     backend: str = "auto",
     cache: bool = True,
 ) -> Image:
@@ -120,9 +124,10 @@ def render(
     what else is wanted of the nearest surface of each pixel, any of
     ``depth``, ``normal``, ``albedo``, ``roughness``, ``metallic``,
     ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
-    :attr:`moka.Image.layers`, which an .exr file takes along. With ``cache``
-    lighting that was preintegrated before is read from disk, and new one is
-    written there; the picture is the same.
+    :attr:`moka.Image.layers`, which an .exr file takes along. Without
+    ``full_textures`` mip levels that are too fine for the picture are left
+    out. With ``cache`` lighting that was preintegrated before is read from
+    disk, and new one is written there; the picture is the same.
 
     Returns an :class:`moka.Image` of linear Rec.709 radiance, float32
     (height, width, 4), top row first.
@@ -158,6 +163,7 @@ def render(
             settings,
             backend,
             parse_aovs(aov),
+            full_textures,
             time,
             animation,
         ),
@@ -240,7 +246,7 @@ def _render_with(
         cache=DiskCache() if cache else None,
     )
     try:
-        renderer.begin(scene)
+        renderer.begin(scene, None if request.full_textures else camera)
         scene.environment = environment.result()
         commands = CommandList()
         renderer.draw(scene, camera, commands)

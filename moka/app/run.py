@@ -3,9 +3,10 @@
 import contextlib
 import time
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from moka.app.application import App, GameTime
+from moka.app.application import App
+from moka.app.clock import Clock
 from moka.app.events import ResizeEvent
 from moka.commands.command_list import CommandList
 from moka.core.errors import OptionError
@@ -14,14 +15,16 @@ from moka.lighting.disk_cache import DiskCache
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
 
+if TYPE_CHECKING:
+    from moka.app.window import Window
+
 __all__ = ["run"]
 
 # Headless frames are evenly spaced, so that they can be compared.
 HEADLESS_DELTA = 1 / 60
 
-# A frame after a stall (a breakpoint, a window being dragged) must not make
-# things jump.
-LONGEST_DELTA = 0.25
+# How long, in seconds, a loop with nothing to draw sleeps unless woken.
+_NAP = 0.5
 
 
 def run(
@@ -34,13 +37,15 @@ def run(
     settings: RenderSettings | None = None,
     backend: str = "auto",
     vsync: bool = True,
+    fullscreen: bool = False,
     debug: bool = False,
     cache: bool = True,
 ) -> App:
     """Run ``app`` until it quits, its window closes or ``frames`` are done.
 
     ``app`` is an :class:`moka.App` or a subclass, which is then made here.
-    ``size`` is in pixels (in a window, screen coordinates). ``headless``
+    ``size`` is in pixels (in a window, screen coordinates), which a
+    ``fullscreen`` window takes from the screen. ``headless``
     needs no display and runs one frame unless ``frames`` says otherwise;
     its time advances by 1/60 s a frame and its last frame is left in
     ``app.image``. ``settings`` are a :class:`RenderSettings`, ``backend``
@@ -69,6 +74,7 @@ def run(
             settings,
             files,
             vsync=vsync,
+            fullscreen=fullscreen,
             debug=debug,
         )
     return running
@@ -91,13 +97,10 @@ def _run_headless(
         GraphicsDevice.open(backend, debug=debug) as device,
         _opened(app, device, Renderer(device, size, settings, cache=cache)),
     ):
+        clock = Clock()
         for number in range(frames):
-            moment = GameTime(
-                HEADLESS_DELTA if number else 0.0,
-                number * HEADLESS_DELTA,
-                number,
-            )
-            commands = _record(app, moment)
+            elapsed = HEADLESS_DELTA if number else 0.0
+            commands = _record(app, clock, elapsed)
             is_last = app.quits or number == frames - 1
             if not is_last:
                 device.submit(commands)
@@ -128,15 +131,19 @@ def _run_in_window(
     cache: DiskCache | None,
     *,
     vsync: bool,
+    fullscreen: bool,
     debug: bool,
 ) -> None:
     from moka.app.window import Window
     from moka.backend.moderngl_backend import ModernGLBackend
     from moka.graphics.shader_source import explain_log
 
-    with Window(title, size, vsync=vsync, debug=debug) as window:
+    with Window(
+        title, size, vsync=vsync, fullscreen=fullscreen, debug=debug
+    ) as window:
         make_context = window.context_factory()
         pixels = window.framebuffer_size
+        app.window = window
         with (
             GraphicsDevice(
                 lambda: ModernGLBackend(make_context(), explain_log)
@@ -147,26 +154,37 @@ def _run_in_window(
                 Renderer(device, pixels, settings, to_window=True, cache=cache),
             ),
         ):
-            started = before = time.perf_counter()
-            number = 0
-            while not (window.should_close or app.quits):
-                for event in window.poll():
-                    _dispatch(app, event)
-                if 0 in window.framebuffer_size:
-                    # Minimised: nothing to draw into, nothing to hurry for.
-                    time.sleep(0.05)
-                    continue
-                now = time.perf_counter()
-                moment = GameTime(
-                    min(now - before, LONGEST_DELTA) if number else 0.0,
-                    now - started,
-                    number,
-                )
-                before = now
-                device.submit_and_present(_record(app, moment))
-                number += 1
-                if number == frames:
-                    break
+            _loop(app, window, frames)
+
+
+def _loop(app: App, window: "Window", frames: int | None) -> None:
+    """Draw frames until somebody has had enough of them."""
+    clock = Clock()
+    before = due = time.perf_counter()
+    is_wanted = True
+    number = 0
+    while not (window.should_close or app.quits):
+        wait = max(due - time.perf_counter(), 0.0) if is_wanted else _NAP
+        for event in window.poll(_NAP if window.is_hidden else wait):
+            _dispatch(app, event)
+            is_wanted = True
+        is_wanted |= (
+            app.take_redraw_request()
+            or app.continuous
+            or not app.renderer.is_complete
+        )
+        now = time.perf_counter()
+        if window.is_hidden or not is_wanted or now < due:
+            continue
+        app.input.gamepads = window.gamepads
+        commands = _record(app, clock, now - before if number else 0.0)
+        app.device.submit_and_present(commands)
+        before = now
+        due = now + 1 / app.frame_limit if app.frame_limit else now
+        is_wanted = False
+        number += 1
+        if number == frames:
+            break
 
 
 @contextlib.contextmanager
@@ -192,11 +210,22 @@ def _opened(
             renderer.close()
 
 
-def _record(app: App, moment: GameTime) -> CommandList:
+def _record(app: App, clock: Clock, elapsed: float) -> CommandList:
+    """Update the app, and record its frame."""
+    has_updated = False
+    updates = clock.advance(
+        elapsed, fixed_step=app.fixed_step, paused=app.paused
+    )
+    for moment in updates:
+        app.scene.animate(moment.delta)
+        app.update(moment)
+        has_updated = True
+        # Seen once: no second update of this frame sees a key go down.
+        app.input.forget_changes()
+    if app.paused and not has_updated:
+        app.input.forget_changes()
     commands = CommandList()
-    app.scene.animate(moment.delta)
-    app.update(moment)
-    app.draw(moment, commands)
+    app.draw(clock.frame(elapsed, paused=app.paused), commands)
     return commands
 
 
@@ -204,4 +233,5 @@ def _dispatch(app: App, event: Any) -> None:
     if isinstance(event, ResizeEvent) and event.width and event.height:
         app.renderer.size = (event.width, event.height)
         app.resize(event.width, event.height)
+    app.input.take(event)
     app.event(event)

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from moka.app.events import (
     CloseEvent,
+    DropEvent,
     Event,
+    FocusEvent,
     KeyEvent,
     MouseButtonEvent,
     MouseMoveEvent,
@@ -20,6 +22,8 @@ from moka.app.events import (
     ScrollEvent,
     TextEvent,
 )
+from moka.app.gamepads import read_gamepads
+from moka.app.input import Gamepad
 from moka.app.keys import Key, Modifiers, MouseButton
 from moka.core.errors import ContextError
 
@@ -47,6 +51,7 @@ class Window:
         vsync: bool = True,
         resizable: bool = True,
         visible: bool = True,
+        fullscreen: bool = False,
         debug: bool = False,
     ) -> None:
         if threading.current_thread() is not threading.main_thread():
@@ -74,7 +79,10 @@ class Window:
         self._window = glfw.create_window(*size, title, None, None)
         if not self._window:
             raise ContextError(f"no window can be opened: {_last_error(glfw)}")
+        self._placed: tuple[int, int, int, int] | None = None
         self._listen()
+        if fullscreen:
+            self.fullscreen = True
 
     def __enter__(self) -> "Window":
         return self
@@ -95,6 +103,71 @@ class Window:
         return width, height
 
     @property
+    def content_scale(self) -> float:
+        """By how much a person has text and buttons enlarged, 1 or more."""
+        across, down = self._glfw.get_window_content_scale(self._window)
+        return float(max(across, down, 1.0))
+
+    @property
+    def is_hidden(self) -> bool:
+        """Whether nothing of it can be seen, as when it is minimised."""
+        glfw = self._glfw
+        return 0 in self.framebuffer_size or bool(
+            glfw.get_window_attrib(self._window, glfw.ICONIFIED)
+        )
+
+    @property
+    def fullscreen(self) -> bool:
+        """Whether it fills a screen; set it to change that."""
+        return bool(self._glfw.get_window_monitor(self._window))
+
+    @fullscreen.setter
+    def fullscreen(self, value: bool) -> None:
+        glfw, window = self._glfw, self._window
+        if value == self.fullscreen:
+            return
+        if not value:
+            place = self._placed or (0, 0, *self.size)
+            glfw.set_window_monitor(window, None, *place, glfw.DONT_CARE)
+            return
+        self._placed = (*glfw.get_window_pos(window), *self.size)
+        monitor = glfw.get_primary_monitor()
+        if not monitor:
+            return
+        mode = glfw.get_video_mode(monitor)
+        glfw.set_window_monitor(
+            window, monitor, 0, 0, *mode.size, mode.refresh_rate
+        )
+
+    @property
+    def clipboard(self) -> str:
+        """The text on the clipboard; set it to copy one there."""
+        text = self._glfw.get_clipboard_string(None)
+        return (text or b"").decode("utf-8", "replace")
+
+    @clipboard.setter
+    def clipboard(self, text: str) -> None:
+        self._glfw.set_clipboard_string(None, text)
+
+    @property
+    def captures_pointer(self) -> bool:
+        """Whether the pointer is hidden and moves without bounds."""
+        glfw = self._glfw
+        mode = glfw.get_input_mode(self._window, glfw.CURSOR)
+        return bool(mode == glfw.CURSOR_DISABLED)
+
+    @captures_pointer.setter
+    def captures_pointer(self, value: bool) -> None:
+        glfw = self._glfw
+        mode = glfw.CURSOR_DISABLED if value else glfw.CURSOR_NORMAL
+        glfw.set_input_mode(self._window, glfw.CURSOR, mode)
+
+    @property
+    def gamepads(self) -> list[Gamepad]:
+        """The gamepads that are plugged in, as they are now."""
+        return read_gamepads(self._glfw)
+
+    @property
     def should_close(self) -> bool:
         """Whether somebody has asked for the window to be closed."""
         return self._window is None or bool(
@@ -109,12 +182,23 @@ class Window:
         """Change what the title bar says."""
         self._glfw.set_window_title(self._window, title)
 
-    def poll(self) -> list[Event]:
-        """What has happened since the last call, oldest first."""
-        self._glfw.poll_events()
+    def poll(self, timeout: float = 0.0) -> list[Event]:
+        """What has happened since the last call, oldest first.
+
+        If that is nothing, waits for something, or for :meth:`wake`, up to
+        ``timeout`` seconds.
+        """
+        if timeout > 0:
+            self._glfw.wait_events_timeout(timeout)
+        else:
+            self._glfw.poll_events()
         events = self._events.copy()
         self._events.clear()
         return events
+
+    def wake(self) -> None:
+        """End a :meth:`poll` that waits; from any thread."""
+        self._glfw.post_empty_event()
 
     def context_factory(self) -> Callable[[], "WindowContext"]:
         """What makes the OpenGL context, called on the render thread.
@@ -162,6 +246,12 @@ class Window:
         )
         glfw.set_char_callback(
             window, lambda _, code: add(TextEvent(chr(code)))
+        )
+        glfw.set_window_focus_callback(
+            window, lambda _, focused: add(FocusEvent(bool(focused)))
+        )
+        glfw.set_drop_callback(
+            window, lambda _, paths: add(DropEvent(tuple(paths)))
         )
         glfw.set_key_callback(window, self._on_key)
         glfw.set_cursor_pos_callback(window, self._on_move)

@@ -186,6 +186,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "metallic, emission, occlusion, uv, object-id",
     )
     add(
+        "--full-textures",
+        action="store_true",
+        help="decode textures in full, also where the picture cannot show it",
+    )
+    add(
         "--stats",
         metavar="PATH.json",
         type=Path,
@@ -275,6 +280,7 @@ def _request(
         settings=settings,
         backend=arguments.backend,
         aovs=arguments.aov,
+        full_textures=arguments.full_textures,
         time=arguments.time,
         animation=arguments.animation,
     )

@@ -1,8 +1,8 @@
-"""Decodes PNG and JPEG to arrays of texels, in any thread.
+"""Decodes images to arrays of texels, in any thread.
 
-glTF 2.0 allows these two (3.8.3), says that embedded colour profiles are
-ignored, and leaves the rest to what image libraries agree on. Pillow
-releases the interpreter's lock while it decodes.
+glTF 2.0 allows PNG and JPEG (3.8.3), extensions bring WebP and AVIF. It says
+that embedded colour profiles are ignored, and leaves the rest to what image
+libraries agree on. Pillow releases the interpreter's lock while it decodes.
 """
 
 import io
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
+from moka.core.image_header import media_type
 
 if TYPE_CHECKING:
     from PIL.ImageFile import ImageFile
@@ -76,7 +77,16 @@ def _open(data: bytes | memoryview) -> "ImageFile":
         from PIL.JpegImagePlugin import JpegImageFile
 
         return JpegImageFile(io.BytesIO(data))
-    raise ValueError("it is neither PNG nor JPEG")
+    kind = media_type(data)
+    if kind == "image/webp":
+        from PIL.WebPImagePlugin import WebPImageFile
+
+        return WebPImageFile(io.BytesIO(data))
+    if kind == "image/avif":
+        from PIL.AvifImagePlugin import AvifImageFile
+
+        return AvifImageFile(io.BytesIO(data))
+    raise ValueError("it is neither PNG, JPEG, WebP nor AVIF")
 
 
 def _texels(file: "ImageFile") -> NDArray[Any]:

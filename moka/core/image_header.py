@@ -1,6 +1,7 @@
-"""The pixel size of a PNG or JPEG from its header, without decoding it.
+"""What kind of image bytes are, and its pixel size, without decoding it.
 
-Sources: ISO/IEC 15948 (PNG), section 11.2.1; ITU-T T.81 (JPEG), annex B.
+Sources: ISO/IEC 15948 (PNG), section 11.2.1; ITU-T T.81 (JPEG), annex B; the
+headers of other formats are read by the module next to this.
 """
 
 from collections.abc import Callable
@@ -19,11 +20,18 @@ Read = Callable[[int, int], bytes]
 
 
 def media_type(data: bytes | memoryview) -> str | None:
-    """The media type that glTF gives to encoded ``data``, None if neither."""
-    head = bytes(data[:8])
-    if head == _PNG:
+    """The media type of what moka decodes, None if ``data`` is nothing of it.
+
+    PNG and JPEG are glTF's own, the others come with extensions.
+    """
+    head = bytes(data[:32])
+    if head.startswith(_PNG):
         return "image/png"
-    return "image/jpeg" if head.startswith(_JPEG) else None
+    if head.startswith(_JPEG):
+        return "image/jpeg"
+    from moka.core.extension_headers import extension_media_type
+
+    return extension_media_type(head)
 
 
 def pixel_size(image: EncodedImage) -> tuple[int, int] | None:
@@ -54,7 +62,11 @@ def _size(read: Read) -> tuple[int, int] | None:
         if head[12:16] != b"IHDR" or len(head) < 24:
             return None
         return _integer(head[16:20]), _integer(head[20:24])
-    return _jpeg_size(read) if head.startswith(_JPEG) else None
+    if head.startswith(_JPEG):
+        return _jpeg_size(read)
+    from moka.core.extension_headers import extension_pixel_size
+
+    return extension_pixel_size(read)
 
 
 def _jpeg_size(read: Read) -> tuple[int, int] | None:

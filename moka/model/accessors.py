@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from moka.model.schema import Accessor, Sparse
 from moka.model.source import GltfSource
 
-__all__ = ["AccessorReader"]
+__all__ = ["COMPONENTS", "AccessorReader"]
 
-_COMPONENTS: dict[int, np.dtype[Any]] = {
+# The types of components by their codes.
+COMPONENTS: dict[int, np.dtype[Any]] = {
     5120: np.dtype("<i1"),
     5121: np.dtype("<u1"),
     5122: np.dtype("<i2"),
@@ -154,7 +155,7 @@ class AccessorReader:
                 f"asks for {accessor.count} elements that no buffer view holds",
             )
         shape = (accessor.count, *_SHAPES[accessor.type])
-        return np.zeros(shape, _COMPONENTS[accessor.component_type])
+        return np.zeros(shape, COMPONENTS[accessor.component_type])
 
     def _substitute(
         self, path: str, base: NDArray[Any], accessor: Accessor, sparse: Sparse
@@ -209,7 +210,7 @@ class AccessorReader:
         source.check_index(
             f"{path}.bufferView", view_index, "bufferViews", len(views)
         )
-        component = _COMPONENTS[component_type]
+        component = COMPONENTS[component_type]
         columns, rows = _SHAPES[type_]
         column_size = rows * component.itemsize
         # Columns of matrices start at multiples of 4 bytes; the padding

@@ -7,7 +7,10 @@ __all__ = ["SUPPORTED_EXTENSIONS", "check_required", "unsupported_extensions"]
 
 SUPPORTED_EXTENSIONS: dict[str, str] = {
     "EXT_meshopt_compression": "vertices and indices of meshoptimizer",
+    "EXT_texture_avif": "AVIF images",
+    "EXT_texture_webp": "WebP images",
     "KHR_animation_pointer": "animated materials, lights and cameras",
+    "KHR_draco_mesh_compression": "triangles compressed by Draco",
     "KHR_lights_punctual": "directional, point and spot lights",
     "KHR_materials_emissive_strength": "emission beyond 1",
     "KHR_materials_unlit": "materials of constant radiance",

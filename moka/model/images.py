@@ -4,6 +4,8 @@ Sources: glTF 2.0 specification, sections 3.8.3 (images) and 3.8.4
 (samplers).
 """
 
+from msgspec import Struct
+
 from moka.commands.descriptors import (
     Filter,
     MipmapMode,
@@ -11,11 +13,27 @@ from moka.commands.descriptors import (
     Wrap,
 )
 from moka.core.encoded_image import EncodedImage
+from moka.core.extras import is_installed
 from moka.model import schema
+from moka.model.schema import read_extension
 from moka.model.source import GltfSource
 from moka.model.uri import is_data_uri
 
-__all__ = ["MAGNIFY", "MINIFY", "WRAPS", "ImageReader", "sampler_descriptor"]
+__all__ = [
+    "IMAGE_EXTENSIONS",
+    "MAGNIFY",
+    "MINIFY",
+    "WRAPS",
+    "ImageReader",
+    "sampler_descriptor",
+]
+
+# The extensions of textures whose images are of these media types.
+IMAGE_EXTENSIONS = {
+    "image/ktx2": "KHR_texture_basisu",
+    "image/avif": "EXT_texture_avif",
+    "image/webp": "EXT_texture_webp",
+}
 
 # What the numbers in samplers mean, which are OpenGL's.
 WRAPS = {
@@ -48,6 +66,12 @@ def sampler_descriptor(sampler: schema.Sampler) -> SamplerDescriptor:
     )
 
 
+class _ImageSource(Struct, gc=False):
+    """What those extensions hold: an image instead of the texture's own."""
+
+    source: schema.Index | None = None
+
+
 class ImageReader:
     """The images of one file, each of them one object however often used."""
 
@@ -64,6 +88,39 @@ class ImageReader:
         if image is None:
             image = self._images[index] = self._open(index)
         return image
+
+    def of_texture(self, index: int) -> EncodedImage | None:
+        """The image of texture ``index``; one of an extension comes first.
+
+        None if only an extension that moka does not read has it, or if the
+        file offers nothing. Raises ModelError as :meth:`image`.
+        """
+        texture = self._source.document.textures[index]
+        path = f"textures[{index}]"
+        place, image = f"{path}.source", texture.source
+        for name in IMAGE_EXTENSIONS.values() if texture.extensions else ():
+            extension = read_extension(
+                texture, name, _ImageSource, self._source.where, path
+            )
+            if extension is None or extension.source is None:
+                continue
+            # Who has no decoder is served by the image that has no need of
+            # it, if there is one.
+            if (
+                name == "KHR_texture_basisu"
+                and texture.source is not None
+                and not is_installed("opengl_basisu")
+            ):
+                continue
+            place = f"{path}.extensions.{name}.source"
+            image = extension.source
+            break
+        if image is None:
+            return None
+        self._source.check_index(
+            place, image, "images", len(self._source.document.images)
+        )
+        return self.image(image)
 
     def _open(self, index: int) -> EncodedImage:
         source = self._source

@@ -130,11 +130,9 @@ def _read_texture(
     )
     texture = document.textures[info.index]
     place = f"textures[{info.index}]"
-    if texture.source is None:
+    image = images.of_texture(info.index)
+    if image is None:
         return None
-    source.check_index(
-        f"{place}.source", texture.source, "images", len(document.images)
-    )
     sampler = schema.Sampler()
     if texture.sampler is not None:
         source.check_index(
@@ -161,7 +159,7 @@ def _read_texture(
             f"uses TEXCOORD_{uv_set}; moka reads TEXCOORD_0 and TEXCOORD_1",
         )
     return Texture(
-        images.image(texture.source),
+        image,
         sampler_descriptor(sampler),
         uv_set,
         transform,

@@ -3,9 +3,12 @@
 Source: glTF 2.0 specification, section 3.7.2 (meshes).
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
 from moka.material.material import Material
 from moka.model import schema
@@ -18,6 +21,9 @@ from moka.model.mesh import (
     Primitive,
 )
 from moka.model.source import GltfSource
+
+if TYPE_CHECKING:
+    from moka.model.draco import DecodedPrimitive
 
 __all__ = ["read_meshes"]
 
@@ -38,6 +44,15 @@ def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
 
         decode_ahead(source)
     accessors = AccessorReader(source)
+    decoded: dict[str, DecodedPrimitive] = {}
+    if any(
+        primitive.extensions
+        for mesh in source.document.meshes
+        for primitive in mesh.primitives
+    ):
+        from moka.model.draco import decode_primitives
+
+        decoded = decode_primitives(source, accessors)
     meshes = []
     for index, mesh in enumerate(source.document.meshes):
         primitives = [
@@ -47,6 +62,7 @@ def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
                 materials,
                 f"meshes[{index}].primitives[{number}]",
                 primitive,
+                decoded.get(f"meshes[{index}].primitives[{number}]"),
             )
             for number, primitive in enumerate(mesh.primitives)
             if "POSITION" in primitive.attributes
@@ -67,7 +83,10 @@ def _read_primitive(
     materials: list[Material],
     path: str,
     primitive: schema.Primitive,
+    decoded: "DecodedPrimitive | None",
 ) -> Primitive:
+    if decoded is not None:
+        accessors = decoded.accessors
     attributes = {}
     for name in _PLAIN:
         index = primitive.attributes.get(name)
@@ -90,8 +109,10 @@ def _read_primitive(
         from moka.model.morphs import read_targets
 
         targets = read_targets(source, accessors, path, primitive, attributes)
-    indices = None
-    if primitive.indices is not None:
+    indices, topology = None, TOPOLOGIES[primitive.mode]
+    if decoded is not None:
+        indices, topology = decoded.indices, Topology.TRIANGLES
+    elif primitive.indices is not None:
         _accessor(source, f"{path}.indices", primitive.indices)
         indices = accessors.indices(primitive.indices)
     material = None
@@ -104,7 +125,7 @@ def _read_primitive(
         return Primitive(
             attributes,
             indices,
-            topology=TOPOLOGIES[primitive.mode],
+            topology=topology,
             material=material,
             targets=targets,
         )

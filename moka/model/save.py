@@ -107,6 +107,7 @@ def _document(model: Model) -> "pygltflib.GLTF2":
         }
         materials.extensions.add(_LIGHTS)
     gltf.extensionsUsed = sorted(materials.extensions)
+    gltf.extensionsRequired = sorted(materials.required)
     return gltf
 
 

@@ -13,7 +13,7 @@ from moka.material.material import (
     TextureTransform,
 )
 from moka.model.binary import BinaryWriter
-from moka.model.images import MAGNIFY, MINIFY, WRAPS
+from moka.model.images import IMAGE_EXTENSIONS, MAGNIFY, MINIFY, WRAPS
 
 if TYPE_CHECKING:
     import pygltflib
@@ -36,12 +36,13 @@ class MaterialWriter:
         self._samplers: dict[SamplerDescriptor, int] = {}
         self._textures: dict[tuple[int, int], int] = {}
         self.extensions: set[str] = set()
+        self.required: set[str] = set()
 
     def material(self, material: Material) -> int:
         """The index of ``material``, written when first asked for.
 
-        Raises ModelError if a texture is neither PNG nor JPEG, which are
-        all that glTF 2.0 holds, ImageFileError if its file is gone.
+        Raises ModelError if a texture is neither PNG nor JPEG nor what an
+        extension of glTF holds, ImageFileError if its file is gone.
         """
         index = self._materials.get(id(material))
         if index is None:
@@ -123,9 +124,18 @@ class MaterialWriter:
         )
         if (image, sampler) not in self._textures:
             self._textures[image, sampler] = len(self._gltf.textures)
+            kind = self._gltf.images[image].mimeType
+            name = IMAGE_EXTENSIONS.get(kind)
             self._gltf.textures.append(
-                pygltflib.Texture(source=image, sampler=sampler)
+                pygltflib.Texture(sampler=sampler, source=image)
+                if name is None
+                else pygltflib.Texture(
+                    sampler=sampler, extensions={name: {"source": image}}
+                )
             )
+            if name is not None:
+                self.extensions.add(name)
+                self.required.add(name)
         return self._textures[image, sampler]
 
     def _image(self, image: EncodedImage) -> int:
@@ -136,8 +146,8 @@ class MaterialWriter:
             kind = media_type(data)
             if kind is None:
                 raise ModelError(
-                    f"{image.where}: neither PNG nor JPEG, which are all "
-                    "that glTF 2.0 can hold"
+                    f"{image.where}: neither PNG nor JPEG nor what an "
+                    "extension of glTF can hold"
                 )
             self._images[id(image)] = len(self._gltf.images)
             self._gltf.images.append(

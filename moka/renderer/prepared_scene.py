@@ -21,6 +21,7 @@ from moka.commands.descriptors import (
     UniformBinding,
 )
 from moka.commands.handles import Handle
+from moka.core.encoded_image import EncodedImage
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
 from moka.lighting.brdf_table import TABLE_SAMPLER
@@ -35,16 +36,20 @@ from moka.material.description import (
     describe_material,
     texture_slots,
 )
-from moka.material.material import Material
+from moka.material.material import Material, Texture
 from moka.model.mesh import Primitive
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.material_table import MaterialTable
 from moka.renderer.permutation import LightingDescription, Permutation
-from moka.renderer.textures import TexturePool, TextureRequest
+from moka.renderer.sampled_levels import SampledLevels, StillPicture
+from moka.renderer.textures import (
+    TexturePool,
+    TextureRequest,
+    texture_request,
+)
 
 __all__ = [
     "LAYER_BACKGROUND",
-    "LAYER_RESOLVE",
     "PreparedScene",
     "SceneMaterials",
     "SharedBindings",
@@ -55,7 +60,6 @@ LAYER_OPAQUE = 0
 LAYER_MASK = 1
 LAYER_BACKGROUND = 2
 LAYER_BLENDED = 3
-LAYER_RESOLVE = 4
 
 _DEFAULT_MATERIAL = Material(name="glTF default")
 
@@ -76,24 +80,32 @@ _ROW = np.dtype(
 class SceneMaterials:
     """Descriptions of the primitives' materials, and their textures begun.
 
-    Made first, so that images decode while everything else goes on.
+    Made first, so that images decode while everything else goes on. With
+    ``picture`` only what it shows is there: ``drawn`` holds the positions
+    among ``primitives`` of those that the other lists are about.
     """
 
     def __init__(
-        self, primitives: Sequence[Primitive], textures: TexturePool
+        self,
+        primitives: Sequence[Primitive],
+        textures: TexturePool,
+        picture: StillPicture | None = None,
     ) -> None:
-        self.materials = [
-            primitive.material or _DEFAULT_MATERIAL for primitive in primitives
-        ]
+        self.drawn: Sequence[int] = (
+            range(len(primitives)) if picture is None else picture.drawn
+        )
+        self.materials: list[Material] = []
         self.descriptions: list[MaterialDescription] = []
-        # By identity: embedded images need not be hashed to be left out.
-        self.sampled: set[int] = set()
         self.requests: list[dict[str, TextureRequest]] = []
+        images: dict[TextureRequest, list[EncodedImage]] = {}
+        reads: dict[TextureRequest, list[tuple[int, Texture]]] = {}
         known: dict[
             tuple[Material, tuple[str, ...], object],
             tuple[MaterialDescription, dict[str, TextureRequest]],
         ] = {}
-        for primitive, material in zip(primitives, self.materials, strict=True):
+        for index in self.drawn:
+            primitive = primitives[index]
+            material = primitive.material or _DEFAULT_MATERIAL
             key = (material, tuple(primitive.attributes), primitive.topology)
             if key not in known:
                 description = describe_material(
@@ -101,30 +113,22 @@ class SceneMaterials:
                 )
                 known[key] = (
                     description,
-                    self._request(material, description, textures),
+                    _requests(material, description, picture, images),
                 )
             description, requests = known[key]
+            self.materials.append(material)
             self.descriptions.append(description)
             self.requests.append(requests)
-
-    def _request(
-        self,
-        material: Material,
-        description: MaterialDescription,
-        textures: TexturePool,
-    ) -> dict[str, TextureRequest]:
-        slots = texture_slots(material)
-        packed = Feature.PACKED_OCCLUSION in description.features
-        requests = {}
-        for use in description.textures:
-            images = [slots[use.slot].image]
-            if packed and use.slot == "metallic_roughness":
-                images.append(slots["occlusion"].image)
-            self.sampled.update(map(id, images))
-            requests[use.slot] = textures.request(
-                use.slot, slots[use.slot], *images[1:]
-            )
-        return requests
+            slots = texture_slots(material)
+            for slot, request in requests.items():
+                reads.setdefault(request, []).append((index, slots[slot]))
+        for request, given in images.items():
+            levels = None
+            if picture is not None:
+                levels = SampledLevels(picture, reads[request])
+            textures.begin(request, given, levels)
+        # By identity: embedded images need not be hashed to be left out.
+        self.sampled = {id(each) for given in images.values() for each in given}
 
     def without_blending(self) -> "SceneMaterials":
         """The same where a surface has to be there or not.
@@ -162,6 +166,34 @@ class SceneMaterials:
         )
 
 
+def _requests(
+    material: Material,
+    description: MaterialDescription,
+    picture: StillPicture | None,
+    images: dict[TextureRequest, list[EncodedImage]],
+) -> dict[str, TextureRequest]:
+    """The textures of a material by slot; their images join ``images``."""
+    slots = texture_slots(material)
+    packed = Feature.PACKED_OCCLUSION in description.features
+    requests = {}
+    for use in description.textures:
+        texture = slots[use.slot]
+        occlusion = (
+            slots["occlusion"].image
+            if packed and use.slot == "metallic_roughness"
+            else texture.image
+        )
+        request = texture_request(
+            use.slot, texture, occlusion, picture.number if picture else 0
+        )
+        given = [texture.image]
+        if request.occlusion is not None:
+            given.append(occlusion)
+        images.setdefault(request, given)
+        requests[use.slot] = request
+    return requests
+
+
 class SharedBindings(Struct, frozen=True):
     """What every surface's bind group holds besides its own."""
 
@@ -172,7 +204,10 @@ class SharedBindings(Struct, frozen=True):
 
 
 class PreparedScene:
-    """Rows of what each primitive binds; owns bind groups and pages."""
+    """Rows of what each primitive binds; owns bind groups and pages.
+
+    The rows of primitives that the materials leave out stay empty.
+    """
 
     def __init__(
         self,
@@ -197,9 +232,9 @@ class PreparedScene:
         ]
         meshes = geometry.meshes(
             [
-                (primitive, description.attributes)
-                for primitive, description in zip(
-                    primitives, materials.descriptions, strict=True
+                (primitives[position], description.attributes)
+                for position, description in zip(
+                    materials.drawn, materials.descriptions, strict=True
                 )
             ]
         )
@@ -230,7 +265,7 @@ class PreparedScene:
                 textures,
             )
             description = permutation.material
-            self.rows[index] = (
+            self.rows[materials.drawn[index]] = (
                 surfaces[index].index,
                 group.index,
                 meshes[index].index,

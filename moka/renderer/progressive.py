@@ -109,8 +109,8 @@ class Progressive:
         are drawn into, ``samples`` those of a pixel, rounded up to whole
         batches, ``max_error`` the relative standard error that is enough.
         """
-        width, height, *_ = size = targets.made_for[0]
-        if size != self._size or targets.resolved_texture != self._source:
+        width, height, *_ = size = targets.size
+        if size != self._size or targets.scene_texture != self._source:
             self.forget()
             self._allocate(targets)
             self._key = None
@@ -200,7 +200,7 @@ class Progressive:
             )
         if ends_batch:
             self._end_batch(buffer, batch, active)
-        buffer.bind_framebuffer(targets.resolved)
+        buffer.bind_framebuffer(targets.scene)
         self._draw(buffer, "resolve_samples.frag", self._from_sums, FULLSCREEN)
 
     def forget(self) -> None:
@@ -243,8 +243,8 @@ class Progressive:
             buffer.draw(program, self._passes.triangle, group, state)
 
     def _allocate(self, targets: Targets) -> None:
-        self._size = size = targets.made_for[0]
-        self._source = targets.resolved_texture
+        self._size = size = targets.size
+        self._source = targets.scene_texture
         tiles = (-(-size[0] // TILE), -(-size[1] // TILE))
         batch = self._texture("batch", size)
         total = self._texture("sum of batches", size)

@@ -1,9 +1,11 @@
 """The order of a frame: a scene becomes passes, packets and pixels.
 
-    scene pass    opaque, then masked, then the environment behind them,
-                  then blended back to front; linear, multisampled
-    accumulation  of reference lighting: frames so far, averaged
-    display pass  samples averaged, exposed, tone mapped, encoded
+    scene pass    opaque, then masked, then blended back to front; linear,
+                  multisampled
+    accumulation  of reference lighting, whose frames have the environment
+                  behind them: frames so far, averaged
+    display pass  samples averaged, the environment behind them; exposed,
+                  tone mapped, encoded
     values pass   where AOVs are asked for: what surfaces are, unlit
 
 What does not change between frames is prepared once
@@ -35,16 +37,16 @@ from moka.renderer.light_sources import LightSources, light_capacity
 from moka.renderer.permutation import FRAME, LightingDescription
 from moka.renderer.prepared_scene import (
     LAYER_BACKGROUND,
-    LAYER_RESOLVE,
     PreparedScene,
     SceneMaterials,
     SharedBindings,
 )
 from moka.renderer.progressive import Progressive
+from moka.renderer.sampled_levels import StillPicture
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.sky_map import SkyMap
-from moka.renderer.targets import Targets, make_targets
+from moka.renderer.targets import Targets
 from moka.renderer.textures import TexturePool
 from moka.renderer.view import View, look_through
 from moka.scene.camera import Camera
@@ -107,6 +109,9 @@ class Renderer:
             np.zeros(FRAME.size, np.uint8),
         )
         self._targets: Targets | None = None
+        # What the scene of the last frame has behind it, not drawn there.
+        self._sky_behind: Sky | None = None
+        self._still: StillPicture | None = None
         self._materials: SceneMaterials | None = None
         self._materials_key: object = None
         self._prepared: PreparedScene | None = None
@@ -130,13 +135,19 @@ class Renderer:
         """
         self._sources.keep()
 
-    def begin(self, scene: Scene) -> None:
+    def begin(self, scene: Scene, still: Camera | None = None) -> None:
         """Start to decode what ``scene`` samples, without waiting for it.
 
         :meth:`draw` does so too; calling this early overlaps decoding with
-        whatever the caller does before the first frame.
+        whatever the caller does before the first frame. With ``still``, a
+        camera, only what a picture through it shows: images of what it does
+        not see stay unopened, and textures lose the levels that are too fine
+        for it. A draw of another picture makes up for it.
         """
         scene.update()
+        self._still = None
+        if still is not None:
+            self._still = StillPicture(scene, still, self.size)
         self._describe(scene)
 
     def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
@@ -147,7 +158,7 @@ class Renderer:
         cannot be had.
         """
         scene.update()
-        materials = self._describe(scene)
+        materials = self._describe(scene, camera)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -190,7 +201,14 @@ class Renderer:
         Premultiplied by coverage; a background colour is not part of it. To
         be recorded after :meth:`draw`.
         """
-        return self._read(commands, self._current_targets.resolved, "f4")
+        targets = self._current_targets
+        key = SortKey(PASS_READ)
+        if targets.samples == 1 and self._sky_behind is None:
+            return self._read(commands, targets.scene, "f4")
+        self._screen.resolve(
+            commands.command_buffer(key), targets, self._sky_behind
+        )
+        return self._read(commands, targets.resolved, "f4")
 
     def draw_values(
         self,
@@ -207,7 +225,7 @@ class Renderer:
         from moka.renderer.surface_values import SurfaceValues, groups_of
 
         scene.update()
-        materials = self._describe(scene)
+        materials = self._describe(scene, camera)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -298,11 +316,22 @@ class Renderer:
             framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
         )
 
-    def _describe(self, scene: Scene) -> SceneMaterials:
-        key = (id(scene), scene.structure_version)
+    def _describe(
+        self, scene: Scene, camera: Camera | None = None
+    ) -> SceneMaterials:
+        """The materials of ``scene``, all unless ``camera`` is the still."""
+        if (
+            camera is not None
+            and self._still is not None
+            and not self._still.shows(scene, camera, self.size)
+        ):
+            self._still = None
+        key = (id(scene), scene.structure_version, self._still)
         if self._materials is None or self._materials_key != key:
+            self.statistics.count("textures_loaded", 0)
+            self.statistics.count("textures_reduced", 0)
             self._materials = SceneMaterials(
-                scene.drawables.primitives, self._textures
+                scene.drawables.primitives, self._textures, self._still
             )
             self._materials_key = key
             images = {
@@ -311,7 +340,6 @@ class Renderer:
                 for material in model.model.materials
                 for texture in material.textures
             }
-            self.statistics.count("textures_loaded", 0)
             self.statistics.set_count(
                 "textures_skipped", len(images - self._materials.sampled)
             )
@@ -392,8 +420,8 @@ class Renderer:
             if self._targets is not None:
                 self._screen.forget()
                 self._progressive.forget()
-                self._targets.destroy(self.device)
-            self._targets = make_targets(
+                self._targets.destroy()
+            self._targets = Targets(
                 self.device, self.size, samples, float_output=float_output
             )
         return self._targets
@@ -434,14 +462,13 @@ class Renderer:
                 scene.transforms, visible, view, states, PASS_SCENE
             )
         )
-        sky = self._sky(scene, view)
-        if targets.samples > 1:
-            key = SortKey(PASS_SCENE, LAYER_RESOLVE)
-            self._screen.resolve(commands, key, targets, sky)
-        elif sky is not None:
-            key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
-            self._screen.draw_background(commands, key, sky)
+        self._sky_behind = self._sky(scene, view)
         if self._accumulates:
+            # What is averaged over frames has its sky in every one of them.
+            if self._sky_behind is not None:
+                key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
+                self._screen.draw_background(commands, key, self._sky_behind)
+                self._sky_behind = None
             self._progressive.accumulate(
                 commands, SortKey(PASS_ACCUMULATE), targets
             )
@@ -511,6 +538,7 @@ class Renderer:
             commands,
             SortKey(PASS_DISPLAY),
             targets,
+            self._sky_behind,
             tone_map=self.settings.tone_map,
             exposure=self.settings.exposure,
             background=None if isinstance(colour, str) else colour,

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from moka.commands.command_list import CommandList
+from moka.commands.command_list import CommandBuffer, CommandList
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,
@@ -53,7 +53,7 @@ def _background(discs: int) -> UniformLayout:
 _TONE_MAP = UniformLayout(
     "ToneMap",
     (
-        Parameter("parameters", ParameterType.VEC4),
+        Parameter("display", ParameterType.VEC4),
         Parameter("background", ParameterType.VEC4),
     ),
 )
@@ -148,29 +148,18 @@ class ScreenPasses:
         )
 
     def resolve(
-        self,
-        commands: CommandList,
-        key: SortKey,
-        targets: Targets,
-        sky: Sky | None,
+        self, buffer: CommandBuffer, targets: Targets, sky: Sky | None
     ) -> None:
-        """Average the samples of the scene, with the sky behind it."""
-        defines: dict[str, str | int] = {"MOKA_SAMPLES": targets.samples}
-        textures = [
-            TextureBinding("scene_map", targets.scene_texture, CUBE_SAMPLER)
-        ]
-        buffer = commands.command_buffer(key)
-        if sky is not None:
-            defines |= {**sky.defines, "MOKA_SKY": 1}
-            textures.append(sky.binding)
-            buffer.fill_buffer(self._background, sky.block)
+        """Write one radiance a pixel into ``targets.resolved``.
+
+        ``sky`` is what lies behind the scene and has not been drawn there.
+        """
+        defines, textures = self._scene(buffer, targets, sky)
         buffer.bind_framebuffer(targets.resolved)
         buffer.draw(
             self._passes.program("resolve.frag", defines),
             self._passes.triangle,
-            self._group(
-                BindGroupDescriptor(tuple(textures), (self._sky_block,))
-            ),
+            self._group(BindGroupDescriptor(textures, (self._sky_block,))),
             FULLSCREEN,
         )
 
@@ -179,49 +168,60 @@ class ScreenPasses:
         commands: CommandList,
         key: SortKey,
         targets: Targets,
+        sky: Sky | None,
         *,
         tone_map: str,
         exposure: float,
         background: tuple[float, float, float] | None,
         window: tuple[int, int] | None,
     ) -> None:
-        """Expose, tone map and encode.
+        """Average the samples, expose, tone map and encode.
 
-        ``background`` is a linear display colour that shows through where
-        coverage is below 1; None keeps alpha. ``window`` is the size of the
-        window to draw into instead of the display target.
+        ``sky`` is as in :meth:`resolve`. ``background`` is a linear display
+        colour that shows through where coverage is below 1; None keeps
+        alpha. ``window`` is the size of the window to draw into instead of
+        the display target.
         """
         values = _TONE_MAP.pack(
             {
-                "parameters": (2.0**exposure, 1.0, 0.0, 0.0),
+                "display": (2.0**exposure, 1.0, 0.0, 0.0),
                 "background": (
                     (0, 0, 0, 0) if background is None else (*background, 1)
                 ),
             }
         )
-        group = BindGroupDescriptor(
-            (
-                TextureBinding(
-                    "radiance_map", targets.resolved_texture, CUBE_SAMPLER
-                ),
-            ),
-            (UniformBinding("ToneMap", self._tone_map),),
-        )
         buffer = commands.command_buffer(key)
         buffer.fill_buffer(self._tone_map, values)
+        defines, textures = self._scene(buffer, targets, sky)
+        defines[f"MOKA_TONE_MAP_{tone_map.upper()}"] = 1
+        blocks = (self._sky_block, UniformBinding("ToneMap", self._tone_map))
         if window is None:
             buffer.bind_framebuffer(targets.display)
         else:
             buffer.bind_framebuffer(None)
             buffer.viewport(0, 0, *window)
         buffer.draw(
-            self._passes.program(
-                "tone_map.frag", {f"MOKA_TONE_MAP_{tone_map.upper()}": 1}
-            ),
+            self._passes.program("tone_map.frag", defines),
             self._passes.triangle,
-            self._group(group),
+            self._group(BindGroupDescriptor(textures, blocks)),
             FULLSCREEN,
         )
+
+    def _scene(
+        self, buffer: CommandBuffer, targets: Targets, sky: Sky | None
+    ) -> tuple[dict[str, str | int], tuple[TextureBinding, ...]]:
+        """Defines and textures of scene_radiance.glsl."""
+        defines: dict[str, str | int] = {}
+        textures = [
+            TextureBinding("radiance_map", targets.scene_texture, CUBE_SAMPLER)
+        ]
+        if targets.samples > 1:
+            defines["MOKA_SAMPLES"] = targets.samples
+        if sky is not None:
+            defines |= {**sky.defines, "MOKA_SKY": 1}
+            textures.append(sky.binding)
+            buffer.fill_buffer(self._background, sky.block)
+        return defines, tuple(textures)
 
     def _group(self, descriptor: BindGroupDescriptor) -> Handle:
         if descriptor not in self._groups:

@@ -201,7 +201,7 @@ class SurfaceValues:
             logarithmic_depth=view.depth_range is not None,
             values=groups,
         )
-        key = (id(scene), scene.structure_version, lighting)
+        key = (materials, lighting)
         if self._prepared is not None and self._prepared_key == key:
             return self._prepared
         if self._prepared is not None:

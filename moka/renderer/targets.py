@@ -1,10 +1,9 @@
 """What a frame is drawn into: a float target, its samples, the display.
 
-Draws go into a linear float target, multisampled or not; samples are
-averaged there, in linear radiance; tone mapping comes last and once.
+Draws go into a linear float target, multisampled or not. The display pass
+averages its samples, in linear radiance, and tone maps once; who wants the
+radiance itself has it resolved into a target that exists only then.
 """
-
-from msgspec import Struct
 
 from moka.commands.descriptors import (
     Attachment,
@@ -15,85 +14,86 @@ from moka.commands.descriptors import (
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 
-__all__ = ["Targets", "make_targets"]
+__all__ = ["Targets"]
 
 
-class Targets(Struct, frozen=True):
-    """The framebuffers of one size, sample count and float output.
+class Targets:
+    """The framebuffers of one size (width, height) and sample count.
 
-    ``scene`` is drawn into, ``resolved`` holds one radiance per pixel (the
-    same framebuffer without multisampling), ``display`` tone mapped bytes.
+    ``scene`` is drawn into and ``scene_texture`` what it holds, ``display``
+    gets tone mapped bytes. Half floats hold radiance up to 65 504, which the
+    display never needs; with ``float_output`` it is float32, for pictures
+    whose values leave as numbers.
     """
 
-    made_for: tuple[tuple[int, int], int, bool]
-    scene: Handle
-    scene_texture: Handle
-    resolved: Handle
-    resolved_texture: Handle
-    display: Handle
-    resources: tuple[Handle, ...]
+    def __init__(
+        self,
+        device: GraphicsDevice,
+        size: tuple[int, int],
+        samples: int,
+        *,
+        float_output: bool,
+    ) -> None:
+        self.made_for = (size, samples, float_output)
+        self._device = device
+        self._resources: list[Handle] = []
+        self._resolved: Handle | None = None
+        self._format = (
+            PixelFormat.RGBA32F if float_output else PixelFormat.RGBA16F
+        )
+        self.scene_texture = self._texture(self._format, samples)
+        self.scene = self._framebuffer(
+            self.scene_texture, self._texture(PixelFormat.DEPTH32F, samples)
+        )
+        self.display = self._framebuffer(self._texture(PixelFormat.RGBA8))
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.made_for[0]
 
     @property
     def samples(self) -> int:
-        """Samples of a pixel in ``scene``; more than 1 must be resolved."""
+        """Samples of a pixel in ``scene``."""
         return self.made_for[1]
 
-    def destroy(self, device: GraphicsDevice) -> None:
+    @property
+    def resolved(self) -> Handle:
+        """A framebuffer for one radiance per pixel; made when asked for."""
+        if self._resolved is None:
+            self._resolved = self._framebuffer(self._texture(self._format))
+        return self._resolved
+
+    def destroy(self) -> None:
         """Destroy all of it."""
-        device.destroy(*self.resources)
-
-
-def make_targets(
-    device: GraphicsDevice,
-    size: tuple[int, int],
-    samples: int,
-    *,
-    float_output: bool,
-) -> Targets:
-    """Targets of ``size`` (width, height).
-
-    Half floats hold radiance up to 65 504, which the display never needs;
-    float32 is for pictures whose values leave as numbers.
-    """
-    colour_format = PixelFormat.RGBA32F if float_output else PixelFormat.RGBA16F
-    resources: list[Handle] = []
-
-    def texture(pixels: PixelFormat, count: int = 1) -> Handle:
-        handle = device.create_texture(
-            TextureDescriptor(
-                pixels, *size, samples=count, label=f"target {pixels.value}"
-            )
-        )
-        resources.append(handle)
-        return handle
-
-    def framebuffer(colour: Handle, depth: Handle | None = None) -> Handle:
-        handle = device.create_framebuffer(
-            FramebufferDescriptor(
-                (Attachment(colour),),
-                None if depth is None else Attachment(depth),
-            )
-        )
-        resources.append(handle)
-        return handle
-
-    resolved_texture = texture(colour_format)
-    depth = texture(PixelFormat.DEPTH32F, samples)
-    scene_texture = resolved_texture
-    if samples > 1:
-        scene_texture = texture(colour_format, samples)
-        scene = framebuffer(scene_texture, depth)
-        resolved = framebuffer(resolved_texture)
-    else:
-        scene = resolved = framebuffer(resolved_texture, depth)
-    display = framebuffer(texture(PixelFormat.RGBA8))
-    return Targets(
-        (size, samples, float_output),
-        scene,
-        scene_texture,
-        resolved,
-        resolved_texture,
-        display,
         # Framebuffers before the textures that they draw into.
-        tuple(reversed(resources)),
-    )
+        self._device.destroy(*reversed(self._resources))
+        self._resources.clear()
+
+    def _texture(self, pixels: PixelFormat, samples: int = 1) -> Handle:
+        return self._keep(
+            self._device.create_texture(
+                TextureDescriptor(
+                    pixels,
+                    *self.size,
+                    samples=samples,
+                    label=f"target {pixels.value}",
+                )
+            )
+        )
+
+    def _framebuffer(
+        self, colour: Handle, depth: Handle | None = None
+    ) -> Handle:
+        return self._keep(
+            self._device.create_framebuffer(
+                FramebufferDescriptor(
+                    (Attachment(colour),),
+                    None if depth is None else Attachment(depth),
+                )
+            )
+        )
+
+    def _keep(self, handle: Handle) -> Handle:
+        self._resources.append(handle)
+        return handle

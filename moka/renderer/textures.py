@@ -7,6 +7,7 @@ the render thread only copies.
 
 import os
 import threading
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
@@ -24,8 +25,9 @@ from moka.core.encoded_image import EncodedImage
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.material.material import Texture
+from moka.renderer.sampled_levels import SampledLevels
 
-__all__ = ["TexturePool", "TextureRequest"]
+__all__ = ["TexturePool", "TextureRequest", "texture_request"]
 
 _DATA_FORMATS = {
     ("u1", 1): PixelFormat.R8,
@@ -53,13 +55,33 @@ class TextureRequest(Struct, frozen=True):
     """An image and how the GPU is to hold it.
 
     ``occlusion`` is the identity of another image whose red channel takes
-    the place of this one's.
+    the place of this one's. ``picture`` is the number of the still picture
+    that it is for, 0 for any.
     """
 
     identity: str
     is_colour: bool
     has_levels: bool
     occlusion: str | None = None
+    picture: int = 0
+
+
+def texture_request(
+    slot: str, texture: Texture, occlusion: EncodedImage, picture: int = 0
+) -> TextureRequest:
+    """The request for a texture of a material.
+
+    ``occlusion`` is the image, of the same size, to read occlusion from;
+    the texture's own, unless another is put in.
+    """
+    identity = texture.image.identity
+    return TextureRequest(
+        identity,
+        slot in COLOUR_SLOTS,
+        texture.sampler.mipmap is not MipmapMode.NONE,
+        None if occlusion.identity == identity else occlusion.identity,
+        picture,
+    )
 
 
 class TexturePool:
@@ -76,37 +98,27 @@ class TexturePool:
         self._decoders: dict[str, _Decoder] = {}
         self._pending: dict[TextureRequest, Future[Handle]] = {}
 
-    def request(
+    def begin(
         self,
-        slot: str,
-        texture: Texture,
-        occlusion: EncodedImage | None = None,
-    ) -> TextureRequest:
+        request: TextureRequest,
+        images: Sequence[EncodedImage],
+        levels: SampledLevels | None = None,
+    ) -> None:
         """Begin to decode a texture; :meth:`handle` waits for it.
 
-        ``occlusion`` is an image of the same size to read occlusion from,
-        if it is not the texture's own.
+        ``images`` are those that the request names. ``levels`` tells which
+        will be read; by default any may be.
         """
-        image = texture.image
-        if occlusion is not None and occlusion.identity == image.identity:
-            occlusion = None
-        request = TextureRequest(
-            image.identity,
-            slot in COLOUR_SLOTS,
-            texture.sampler.mipmap is not MipmapMode.NONE,
-            None if occlusion is None else occlusion.identity,
+        if request in self._pending:
+            return
+        decoders = [
+            self._decoders.setdefault(image.identity, _Decoder(image))
+            for image in images
+        ]
+        self._pending[request] = self._workers.submit(
+            self._make, request, decoders, levels
         )
-        if request not in self._pending:
-            decoders = [
-                self._decoders.setdefault(each.identity, _Decoder(each))
-                for each in (image, occlusion)
-                if each is not None
-            ]
-            self._pending[request] = self._workers.submit(
-                self._make, request, decoders
-            )
-            self._statistics.count("textures_loaded", len(decoders))
-        return request
+        self._statistics.count("textures_loaded", len(decoders))
 
     def handle(self, request: TextureRequest) -> Handle:
         """The texture of a request; raises ImageFileError for a bad image."""
@@ -120,7 +132,10 @@ class TexturePool:
         self._workers.shutdown(wait=True, cancel_futures=True)
 
     def _make(
-        self, request: TextureRequest, decoders: "list[_Decoder]"
+        self,
+        request: TextureRequest,
+        decoders: "list[_Decoder]",
+        read: SampledLevels | None,
     ) -> Handle:
         from moka.core.mip_levels import reduce_levels
 
@@ -134,10 +149,15 @@ class TexturePool:
                 if request.has_levels
                 else [texels]
             )
+            height, width = texels.shape[:2]
+            finest = read.finest(width, height) if read else 0
+            if finest:
+                levels = levels[finest:]
+                self._statistics.count("textures_reduced")
             if pixels in _PADDED:
                 pixels = _PADDED[pixels]
                 levels = [_padded(level) for level in levels]
-        height, width = texels.shape[:2]
+        height, width = levels[0].shape[:2]
         return self._device.create_texture(
             TextureDescriptor(
                 pixels,

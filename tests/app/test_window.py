@@ -18,6 +18,7 @@ from moka.app import window as window_module
 from moka.app.events import (
     CloseEvent,
     Event,
+    FocusEvent,
     KeyEvent,
     MouseButtonEvent,
     MouseMoveEvent,
@@ -276,3 +277,51 @@ def test_without_a_display_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_key_has_a_code() -> None:
     pytest.importorskip("glfw")
     assert set(window_module._keys().values()) == set(Key)
+
+
+def test_the_keyboard_goes_elsewhere_and_comes_back(window: Window) -> None:
+    with Window("other", (50, 50), vsync=False):
+        wait_for(
+            window,
+            FocusEvent,
+            lambda seen: seen[-1:] == [FocusEvent(False)],
+        )
+
+
+def test_a_woken_window_does_not_wait_on(window: Window) -> None:
+    window.poll()
+    started = time.monotonic()
+    timer = threading.Timer(0.05, window.wake)
+    timer.start()
+    window.poll(timeout=WAIT_S)
+    timer.join()
+    assert time.monotonic() - started < WAIT_S / 2
+
+
+def test_full_screen_and_back(window: Window) -> None:
+    assert not window.fullscreen
+    before = window.size
+    window.fullscreen = True
+    (event,) = wait_for(window, ResizeEvent)[-1:]
+    assert window.fullscreen
+    assert event.width > before[0]
+    window.fullscreen = False
+    wait_for(window, ResizeEvent)
+    assert window.size == before
+    assert not window.fullscreen
+
+
+def test_the_clipboard_keeps_a_text(window: Window) -> None:
+    window.clipboard = "moka render hélmet.glb"
+    assert window.clipboard == "moka render hélmet.glb"
+
+
+def test_a_captured_pointer_is_given_back(window: Window) -> None:
+    assert not window.captures_pointer
+    window.captures_pointer = True
+    assert window.captures_pointer
+    window.captures_pointer = False
+    assert not window.captures_pointer
+    assert window.content_scale >= 1.0
+    assert not window.is_hidden
+    assert isinstance(window.gamepads, list)

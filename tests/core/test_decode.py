@@ -168,7 +168,7 @@ def test_every_truncation_names_the_image(kind: str) -> None:
 
 def test_other_formats_are_named_as_such() -> None:
     data = encode(PillowImage.fromarray(noise(2, 2, 3)), "BMP")
-    with pytest.raises(ImageFileError, match="neither PNG nor JPEG"):
+    with pytest.raises(ImageFileError, match="neither PNG, JPEG, WebP"):
         decoded(data)
 
 

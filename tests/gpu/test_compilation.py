@@ -44,6 +44,15 @@ PASSES = [
         for tone_map in TONE_MAPS
         for gamma in ((), ("MOKA_ENCODE_GAMMA",))
     ),
+    *(
+        (shader, scene)
+        for shader in ("resolve.frag", "tone_map.frag")
+        for scene in (
+            ("MOKA_SKY",),
+            ("MOKA_SAMPLES",),
+            ("MOKA_SAMPLES", "MOKA_SKY", "MOKA_SUN_DISCS"),
+        )
+    ),
 ]
 # Files that need the defines and the injected text of a material; they are
 # compiled with it.

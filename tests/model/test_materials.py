@@ -181,8 +181,8 @@ def test_texture_transform_may_choose_other_coordinates() -> None:
 def test_a_texture_that_only_an_extension_has_is_left_out() -> None:
     (material,) = load(
         {"normalTexture": {"index": 0}},
-        textures=[{"extensions": {"EXT_texture_webp": {"source": 0}}}],
-        extensionsUsed=["EXT_texture_webp"],
+        textures=[{"extensions": {"EXT_texture_unknown": {"source": 0}}}],
+        extensionsUsed=["EXT_texture_unknown"],
     )
     assert material.normal_texture is None
 

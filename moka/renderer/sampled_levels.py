@@ -1,0 +1,328 @@
+"""Which mip levels of its textures a still picture can show.
+
+A level is chosen by how far texture coordinates move from pixel to pixel. Of
+a scene and a camera that stay as they are this is known before anything is
+decoded, so that levels which are finer than any that would be read need not
+be made. Everything here errs on their side: hidden surfaces count as seen,
+and whatever is not understood counts as read in full.
+"""
+
+import threading
+from collections.abc import Iterable
+from itertools import count
+
+import numpy as np
+from msgspec import Struct
+from numpy.typing import NDArray
+
+from moka.commands.descriptors import (
+    Filter,
+    MipmapMode,
+    SamplerDescriptor,
+)
+from moka.core.maths import Array
+from moka.material.material import Texture
+from moka.material.parameters import uv_matrix
+from moka.model.mesh import Primitive
+from moka.model.triangles import triangle_corners
+from moka.scene.camera import Camera
+from moka.scene.scene import Scene
+
+__all__ = ["SampledLevels", "StillPicture", "footprints"]
+
+# How much of a texture's visible area may miss a level that is left out, each
+# pixel with the weight that the level has there: triangles whose coordinates
+# collapse, and steps a little below two texels.
+_NEGLIGIBLE = 1e-3
+
+# With fewer texels than this for each triangle, to measure the triangles
+# costs more than the levels. A draw costs as much as so many triangles.
+_TEXELS_PER_TRIANGLE = 16
+_TRIANGLES_PER_DRAW = 256
+
+# Triangles measured at a time, so that temporaries stay small.
+_BLOCK = 1 << 14
+
+_numbers = count(1)
+
+
+class Footprints(Struct, frozen=True):
+    """How T visible triangles read a texture.
+
+    ``steps`` (2, T) is by how much of the texture's width and height the
+    coordinates move from one pixel to the next, at least; ``areas`` (T,) are
+    in pixels.
+    """
+
+    steps: Array
+    areas: Array
+
+
+class StillPicture:
+    """A scene through a camera, neither of which moves, ``size`` in pixels.
+
+    ``visible`` (D,) tells which draws may be seen, as of the scene's last
+    update, ``number`` tells pictures apart.
+    """
+
+    def __init__(
+        self, scene: Scene, camera: Camera, size: tuple[int, int]
+    ) -> None:
+        aspect = size[0] / size[1]
+        self.number = next(_numbers)
+        self.size = size
+        self.visible = scene.visible(camera, aspect)
+        self._key = _key(scene, camera, size)
+        self._primitives = scene.drawables.primitives
+        # Draws of one primitive side by side.
+        draws = np.flatnonzero(self.visible)
+        primitive = scene.drawables.primitive[draws]
+        order = np.argsort(primitive, kind="stable")
+        draws = draws[order]
+        self._mirrored = scene.drawables.mirrored[draws]
+        drawn, first = np.unique(primitive[order], return_index=True)
+        ends = np.append(first[1:], len(draws))
+        self._draws_of = {
+            index: range(start, end)
+            for index, start, end in zip(
+                drawn.tolist(), first.tolist(), ends.tolist(), strict=True
+            )
+        }
+        clip = camera.projection_matrix(aspect, reversed_z=True)
+        clip = clip @ camera.view_matrix
+        # What overflows is not finite, and read in full.
+        with np.errstate(over="ignore", invalid="ignore"):
+            world = scene.transforms.world[scene.drawables.row[draws]]
+            self._clip: Array = clip @ world
+        self._lock = threading.Lock()
+        self._measured: dict[object, Footprints | None] = {}
+
+    def shows(
+        self, scene: Scene, camera: Camera, size: tuple[int, int]
+    ) -> bool:
+        """Whether this is still the same picture."""
+        return self._key == _key(scene, camera, size) and np.array_equal(
+            self.visible, scene.visible(camera, size[0] / size[1])
+        )
+
+    @property
+    def drawn(self) -> list[int]:
+        """Positions of the primitives that may be seen, in order."""
+        return list(self._draws_of)
+
+    def measure(self, primitive: int, texture: Texture) -> Footprints | None:
+        """How a primitive reads ``texture``; None if that is not clear.
+
+        ``primitive`` is its position among the scene's. In any thread.
+        """
+        key = (primitive, texture.uv_set, texture.transform)
+        with self._lock:
+            if key not in self._measured:
+                self._measured[key] = self._measure(primitive, texture)
+            return self._measured[key]
+
+    def effort(self, primitive: int) -> int:
+        """What :meth:`measure` costs, in triangles."""
+        triangles = self._primitives[primitive].element_count
+        draws = len(self._draws_of[primitive])
+        return draws * (triangles + _TRIANGLES_PER_DRAW)
+
+    def _measure(self, index: int, texture: Texture) -> Footprints | None:
+        primitive = self._primitives[index]
+        coordinates = _coordinates(primitive, texture)
+        corners = triangle_corners(primitive)
+        if coordinates is None or not len(corners):
+            return None
+        positions = primitive.attributes["POSITION"]
+        double_sided = bool(
+            primitive.material and primitive.material.double_sided
+        )
+        measured = []
+        for draw in self._draws_of[index]:
+            for start in range(0, len(corners), _BLOCK):
+                block = corners[start : start + _BLOCK]
+                footprint = footprints(
+                    positions[block],
+                    coordinates[block],
+                    self._clip[draw],
+                    self.size,
+                    front=None
+                    if double_sided
+                    else 1 - 2 * self._mirrored[draw],
+                )
+                if footprint is None:
+                    return None
+                measured.append(footprint)
+        return Footprints(
+            np.concatenate([each.steps for each in measured], axis=1),
+            np.concatenate([each.areas for each in measured]),
+        )
+
+
+class SampledLevels:
+    """The levels of one texture that ``picture`` can show.
+
+    ``reads`` are positions of primitives among the scene's, and what of
+    their materials reads the texture.
+    """
+
+    def __init__(
+        self, picture: StillPicture, reads: Iterable[tuple[int, Texture]]
+    ) -> None:
+        self._picture = picture
+        self._reads = list(reads)
+
+    def finest(self, width: int, height: int) -> int:
+        """The finest level that is read of a texture of this size.
+
+        OpenGL 4.6, 8.14.1, leaves drivers a choice of how they measure a
+        step in both directions at once; the smallest they may is the larger
+        of the two.
+        """
+        picture = self._picture
+        effort = sum(
+            picture.effort(primitive)
+            for primitive in {primitive for primitive, _ in self._reads}
+        )
+        if effort * _TEXELS_PER_TRIANGLE > width * height:
+            return 0
+        exact: list[Array] = []
+        areas: list[Array] = []
+        for primitive, texture in self._reads:
+            measured = picture.measure(primitive, texture)
+            if texture.sampler.mipmap is MipmapMode.NONE or measured is None:
+                return 0
+            steps = np.maximum(
+                width * measured.steps[0], height * measured.steps[1]
+            )
+            exact.append(steps / _largest_step(texture.sampler))
+            areas.append(measured.areas)
+        return _level(
+            np.concatenate(exact),
+            np.concatenate(areas),
+            picture.size[0] * picture.size[1],
+            max(width, height).bit_length() - 1,
+        )
+
+
+def footprints(
+    positions: NDArray[np.float32],
+    coordinates: Array,
+    clip: Array,
+    size: tuple[int, int],
+    *,
+    front: int | None,
+) -> Footprints | None:
+    """How triangles read a texture, those of them that can be seen.
+
+    ``positions`` (T, 3, 3) and texture ``coordinates`` (T, 3, 2) are of
+    their corners, ``clip`` (4, 4) takes positions to clip space with 0 < z <
+    w, ``size`` is the picture's in pixels. ``front`` is 1 if triangles that
+    turn anticlockwise are seen, -1 if clockwise ones are, None for both.
+    None if a triangle may reach behind the near plane, where a texture is as
+    large as one likes.
+
+    Of u = (u / w) / (1 / w) both parts change evenly over the screen, so the
+    quotient rule gives the derivative at each corner: Heckbert 1989,
+    "Fundamentals of Texture Mapping and Image Warping", 3.5. The least of
+    three corners stands for a triangle.
+    """
+    half = 0.5 * np.array(size)[:, None, None]
+    with np.errstate(all="ignore"):
+        points = positions.swapaxes(0, 1)
+        xy = np.array([points @ row[:3] + row[3] for row in clip[:2]])
+        z, w = (points @ row[:3] + row[3] for row in clip[2:])
+        outside = _all_corners(z > w)
+        for side in (xy[0] > w, xy[0] < -w, xy[1] > w, xy[1] < -w):
+            outside |= _all_corners(side)
+        # Not so for what is not finite.
+        before = _all_corners((z <= w) & (w > 0) & (w < np.inf))
+        if not (before | outside).all():
+            return None
+        xy *= half / w
+        first, second = xy[:, 1] - xy[:, 0], xy[:, 2] - xy[:, 0]
+        twice_area = first[0] * second[1] - first[1] * second[0]
+        if not (np.isfinite(twice_area) | outside).all():
+            return None
+        faces = twice_area * front > 0 if front else twice_area != 0
+        seen = np.flatnonzero(faces & ~outside)
+        xy, w = xy[:, :, seen], w[:, seen]
+        first, second = first[:, seen], second[:, seen]
+        twice_area = twice_area[seen]
+
+        def gradient(values: Array) -> Array:
+            """Per pixel (2, T), of values (3, T) at the corners."""
+            along_first, along_second = values[1:] - values[0]
+            turned = along_first * second - along_second * first
+            across: Array = np.stack([turned[1], -turned[0]]) / twice_area
+            return across
+
+        inverse = 1.0 / w
+        by_distance = gradient(inverse)
+        steps = np.empty((2, len(seen)))
+        for axis in (0, 1):
+            value = coordinates[seen, :, axis].T
+            by_pixel = gradient(value * inverse)[:, None] - (
+                value * by_distance[:, None]
+            )
+            steps[axis] = (w * np.abs(by_pixel).max(axis=0)).min(axis=0)
+    extent = np.clip(xy.max(axis=1), -half[:, 0], half[:, 0])
+    extent -= np.clip(xy.min(axis=1), -half[:, 0], half[:, 0])
+    areas = np.minimum(0.5 * np.abs(twice_area), extent.prod(axis=0))
+    return Footprints(steps, areas)
+
+
+def _all_corners(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Flags (T,) of triangles, of flags (3, T) of corners."""
+    together: NDArray[np.bool_] = flags[0] & flags[1] & flags[2]
+    return together
+
+
+def _level(steps: Array, areas: Array, pixels: int, last: int) -> int:
+    """The finest level that is not negligible."""
+    allowed = _NEGLIGIBLE * min(areas.sum(), pixels)
+    with np.errstate(divide="ignore"):
+        # A step of 2 texels of the full size reads level 1 alone.
+        sampled = np.log2(steps)
+    for level in range(last):
+        weights = np.clip(level + 1 - sampled, 0.0, 1.0)
+        if weights @ areas > allowed:
+            return level
+    return last
+
+
+def _largest_step(sampler: SamplerDescriptor) -> float:
+    """The step, in texels, up to which a sampler may read its finest level.
+
+    An anisotropic one divides it. With these filters magnification begins
+    half a level later (OpenGL 4.6, 8.14), and would reach a level of which
+    the nearest texel should be read.
+    """
+    late = sampler.magnify is Filter.LINEAR and sampler.minify is Filter.NEAREST
+    return sampler.anisotropy * (2.0**0.5 if late else 1.0)
+
+
+def _coordinates(primitive: Primitive, texture: Texture) -> Array | None:
+    """The texture coordinates (N, 2) of what stays where its arrays say."""
+    if getattr(primitive, "targets", None) is not None or any(
+        name.startswith("JOINTS_") for name in primitive.attributes
+    ):
+        return None
+    uv = primitive.attributes.get(f"TEXCOORD_{texture.uv_set}")
+    if uv is None:
+        return None
+    coordinates = uv.astype(np.float64)
+    if texture.transform is not None:
+        coordinates = coordinates @ uv_matrix(texture.transform)[:, :2].T
+    return coordinates
+
+
+def _key(scene: Scene, camera: Camera, size: tuple[int, int]) -> object:
+    return (
+        id(scene),
+        scene.structure_version,
+        scene.transforms.version,
+        camera.view_matrix.tobytes(),
+        camera.projection,
+        size,
+    )
