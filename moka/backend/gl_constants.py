@@ -12,7 +12,9 @@ from moka.commands.descriptors import (
     Wrap,
 )
 
+ARRAY_BUFFER = 0x8892
 BACK = 0x0405
+BYTE = 0x1400
 BLEND = 0x0BE2
 CCW = 0x0901
 CLAMP_TO_EDGE = 0x812F
@@ -46,6 +48,7 @@ PROGRAM_POINT_SIZE = 0x8642
 READ_FRAMEBUFFER = 0x8CA8
 SAMPLE_ALPHA_TO_COVERAGE = 0x809E
 SCISSOR_TEST = 0x0C11
+SHORT = 0x1402
 TEXTURE0 = 0x84C0
 TEXTURE_2D = 0x0DE1
 TEXTURE_2D_MULTISAMPLE = 0x9100
@@ -134,8 +137,11 @@ MINIFY = {
 _RED, _RG, _RGB, _RGBA = 0x1903, 0x8227, 0x1907, 0x1908
 _BY_CHANNELS = {1: _RED, 2: _RG, 3: _RGB, 4: _RGBA}
 _RED_INTEGER = 0x8D94
-_TYPES = {
+#: By NumPy's type codes, of texels and of vertex attributes.
+COMPONENT_TYPE = {
+    "i1": BYTE,
     "u1": UNSIGNED_BYTE,
+    "i2": SHORT,
     "u2": UNSIGNED_SHORT,
     "f2": HALF_FLOAT,
     "f4": FLOAT,
@@ -171,7 +177,7 @@ def pixel_format(pixels: PixelFormat) -> tuple[int, int, int]:
     return (
         _INTERNAL[pixels],
         transfer_format(pixels),
-        _TYPES[pixels.dtype],
+        COMPONENT_TYPE[pixels.dtype],
     )
 
 
@@ -188,4 +194,4 @@ def readback_format(channels: int, dtype: str) -> tuple[int, int]:
     """Transfer format and type of pixels read from a framebuffer."""
     if dtype == "u4":
         return _RED_INTEGER, UNSIGNED_INT
-    return _BY_CHANNELS[channels], _TYPES[dtype]
+    return _BY_CHANNELS[channels], COMPONENT_TYPE[dtype]

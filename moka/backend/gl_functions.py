@@ -63,6 +63,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
         _INT,
     ),
     "Enable": (None, _UINT),
+    "EnableVertexAttribArray": (None, _UINT),
     "Finish": (None,),
     "FramebufferTexture2D": (None, _UINT, _UINT, _UINT, _UINT, _INT),
     "FrontFace": (None, _UINT),
@@ -110,6 +111,15 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     ),
     "TexParameteri": (None, _UINT, _UINT, _INT),
     "UseProgram": (None, _UINT),
+    "VertexAttribPointer": (
+        None,
+        _UINT,
+        _INT,
+        _UINT,
+        _BOOL,
+        _INT,
+        _POINTER,
+    ),
     "Viewport": (None, _INT, _INT, _INT, _INT),
 }
 

@@ -9,6 +9,8 @@ from typing import Any
 
 from msgspec import Struct
 
+from moka.backend import gl_constants as c
+from moka.backend.gl_functions import Functions
 from moka.backend.gl_textures import GlTexture, SamplerCache
 from moka.commands.descriptors import (
     BindGroupDescriptor,
@@ -165,6 +167,7 @@ class VertexSource(Struct, frozen=True):
 
 def make_vertex_array(
     context: Any,
+    gl: Functions,
     program: GlProgram,
     source: VertexSource,
     buffers: Callable[[Handle], Any],
@@ -181,21 +184,22 @@ def make_vertex_array(
     array = context.vertex_array(program.program, [], index_buffer)
     missing = set(program.attributes)
     if source.layout is not None and source.vertex_buffer is not None:
-        buffer = buffers(source.vertex_buffer)
+        # ModernGL's own binding of attributes cannot normalise integers.
+        gl.BindVertexArray(array.glo)
+        gl.BindBuffer(c.ARRAY_BUFFER, buffers(source.vertex_buffer).glo)
         for attribute in source.layout.attributes:
             location = program.attributes.get(attribute.name)
             if location is None:
                 continue
-            array.bind(
+            gl.VertexAttribPointer(
                 location,
-                "f",
-                buffer,
-                f"{attribute.components}{attribute.type}",
-                attribute.offset,
-                source.layout.stride,
-                0,
+                attribute.components,
+                c.COMPONENT_TYPE[attribute.type],
                 attribute.normalised,
+                source.layout.stride,
+                attribute.offset,
             )
+            gl.EnableVertexAttribArray(location)
             missing.discard(attribute.name)
     bind_instances(array, program, instances, 0)
     missing.difference_update(name for name, *_ in INSTANCE_ATTRIBUTES)

@@ -353,7 +353,12 @@ class ModernGLBackend:
         array = self._arrays.get((slot, number))
         if array is None:
             array = self._arrays[slot, number] = make_vertex_array(
-                self._ctx, program, source, self._get, self._instances
+                self._ctx,
+                self._gl,
+                program,
+                source,
+                self._get,
+                self._instances,
             )
             state.forget("vertex_array")
         state.program(program.name)
