@@ -1,0 +1,1 @@
+"""Panels and the viewer: what a person sees around the picture."""
