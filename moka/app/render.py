@@ -7,6 +7,7 @@ render thread makes the context and compiles; they meet at the first frame.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -193,7 +194,7 @@ def render_request(
     """
     _check_size(request.size)
     # In this order: the context is made and the map is read by other
-    # threads while this one imports what the rest of the work needs.
+    # threads while this one reads the model.
     from moka.graphics.device import GraphicsDevice
 
     with (
@@ -223,9 +224,7 @@ def _render_with(
     cache: bool,
     deliver: Callable[[Image], None] | None,
 ) -> Image:
-    from moka.commands.command_list import CommandList
-    from moka.lighting.disk_cache import DiskCache
-    from moka.renderer.renderer import Renderer
+    from moka.renderer.material_pool import MaterialPool
     from moka.scene.scene import Scene
 
     with statistics.stage("parse"):
@@ -238,15 +237,23 @@ def _render_with(
         _pose(model, request, 0.0)
         camera = _choose_camera(request, scene)
         _pose(model, request, request.time)
-    renderer = Renderer(
-        device,
-        request.size,
-        request.settings,
-        statistics=statistics,
-        cache=DiskCache() if cache else None,
-    )
-    try:
-        renderer.begin(scene, None if request.full_textures else camera)
+        scene.update()
+    with closing(MaterialPool(device, statistics)) as materials:
+        still = None if request.full_textures else camera
+        materials.begin(scene, still, request.size)
+        # The images decode while this thread imports the rest.
+        from moka.commands.command_list import CommandList
+        from moka.lighting.disk_cache import DiskCache
+        from moka.renderer.renderer import Renderer
+
+        renderer = Renderer(
+            device,
+            request.size,
+            request.settings,
+            statistics=statistics,
+            cache=DiskCache() if cache else None,
+            materials=materials,
+        )
         scene.environment = environment.result()
         commands = CommandList()
         renderer.draw(scene, camera, commands)
@@ -282,8 +289,6 @@ def _render_with(
             with statistics.stage("store"):
                 renderer.keep_lighting()
         return image
-    finally:
-        renderer.close()
 
 
 def _image(

@@ -44,10 +44,9 @@ from moka.commands.descriptors import (
 from moka.commands.draws import INSTANCE
 from moka.commands.handles import Handle, ResourceKind
 from moka.core.errors import DeviceError, ShaderError
+from moka.core.heap import keep_large_blocks
 
 __all__ = ["ModernGLBackend"]
-
-_LARGEST_KEPT = 1 << 24
 
 
 class ModernGLBackend:
@@ -284,11 +283,7 @@ class ModernGLBackend:
 
     def _initialise(self) -> None:
         gl = self._gl
-        # A software driver allocates where we do. Freeing one large block
-        # makes glibc keep such blocks (mallopt(3), M_MMAP_THRESHOLD) instead
-        # of having the kernel clear fresh pages for every frame's buffers:
-        # 10 000 cubes take 16 ms a frame instead of 28.
-        self._ctx.buffer(reserve=_LARGEST_KEPT).release()
+        keep_large_blocks()
         gl.PixelStorei(c.UNPACK_ALIGNMENT, 1)
         gl.PixelStorei(c.PACK_ALIGNMENT, 1)
         gl.Enable(c.TEXTURE_CUBE_MAP_SEAMLESS)

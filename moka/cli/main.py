@@ -47,11 +47,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     the process, which then is ours: see :func:`run_process`.
     """
     if arguments is None:
-        return run_process(partial(_run, sys.argv[1:]))
+        return run_process(partial(_run, sys.argv[1:], owns_process=True))
     return _run(list(arguments))
 
 
-def _run(given: Sequence[str]) -> int:
+def _run(given: Sequence[str], *, owns_process: bool = False) -> int:
     # NumPy's linear algebra starts a thread per core when it is loaded and
     # has only small matrices here: 40 ms of a processor for nothing.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -59,6 +59,7 @@ def _run(given: Sequence[str]) -> int:
     try:
         parsed = _parser(given).parse_args(given)
         parsed.started = STARTED
+        parsed.owns_process = owns_process
         return int(parsed.execute(parsed))
     except MokaError as error:
         return _fail(str(error), USER_ERROR, debug=debug)

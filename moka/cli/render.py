@@ -6,7 +6,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from moka.core.aov import parse_aovs
 from moka.core.errors import OptionError
 from moka.core.option_text import count, number, size
 
@@ -214,6 +213,10 @@ def execute(arguments: argparse.Namespace) -> int:
     """Render and write every output, or write none and raise MokaError."""
     outputs = arguments.output or [Path("moka.png")]
     _check_outputs(outputs, arguments.stats)
+    if arguments.owns_process:
+        from moka.core.heap import claim_heap
+
+        claim_heap()
     request = _request(arguments, outputs)
 
     from moka.app.render import render_request
@@ -320,6 +323,8 @@ def _check_outputs(outputs: list[Path], statistics: Path | None) -> None:
 
 
 def _aovs(text: str) -> tuple[str, ...]:
+    from moka.core.aov import parse_aovs
+
     try:
         return parse_aovs(text)
     except OptionError as error:

@@ -34,20 +34,19 @@ from moka.lighting.disk_cache import DiskCache
 from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.light_sources import LightSources, light_capacity
+from moka.renderer.material_pool import MaterialPool
 from moka.renderer.permutation import FRAME, LightingDescription
 from moka.renderer.prepared_scene import (
     LAYER_BACKGROUND,
     PreparedScene,
-    SceneMaterials,
     SharedBindings,
 )
 from moka.renderer.progressive import Progressive
-from moka.renderer.sampled_levels import StillPicture
+from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.sky_map import SkyMap
 from moka.renderer.targets import Targets
-from moka.renderer.textures import TexturePool
 from moka.renderer.view import View, look_through
 from moka.scene.camera import Camera
 from moka.scene.lights import LIGHT
@@ -76,7 +75,8 @@ class Renderer:
     display pass ends in the device's window, else in a texture that
     :meth:`read_display` reads. ``statistics`` collects times and counters.
     ``cache`` is where preintegrated lighting is looked for, and written to
-    by :meth:`keep_lighting`.
+    by :meth:`keep_lighting`. ``materials`` is a pool of this device in which
+    images may be decoding already; the renderer closes it.
     """
 
     def __init__(
@@ -88,6 +88,7 @@ class Renderer:
         to_window: bool = False,
         statistics: Statistics | None = None,
         cache: DiskCache | None = None,
+        materials: MaterialPool | None = None,
     ) -> None:
         self.device = device
         self.size = size
@@ -101,7 +102,7 @@ class Renderer:
         self._sources = LightSources(device, passes, self.statistics, cache)
         self._programs = ProgramCache(device)
         self._geometry = GeometryPool(device)
-        self._textures = TexturePool(device, self.statistics)
+        self._materials = materials or MaterialPool(device, self.statistics)
         self._frame = device.create_buffer(
             BufferDescriptor(
                 BufferUsage.UNIFORM, FRAME.size, dynamic=True, label="frame"
@@ -111,9 +112,6 @@ class Renderer:
         self._targets: Targets | None = None
         # What the scene of the last frame has behind it, not drawn there.
         self._sky_behind: Sky | None = None
-        self._still: StillPicture | None = None
-        self._materials: SceneMaterials | None = None
-        self._materials_key: object = None
         self._prepared: PreparedScene | None = None
         self._prepared_key: object = None
         self._gatherer: DrawGatherer
@@ -121,7 +119,7 @@ class Renderer:
 
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
-        self._textures.close()
+        self._materials.close()
 
     @property
     def has_lighting_to_keep(self) -> bool:
@@ -135,21 +133,6 @@ class Renderer:
         """
         self._sources.keep()
 
-    def begin(self, scene: Scene, still: Camera | None = None) -> None:
-        """Start to decode what ``scene`` samples, without waiting for it.
-
-        :meth:`draw` does so too; calling this early overlaps decoding with
-        whatever the caller does before the first frame. With ``still``, a
-        camera, only what a picture through it shows: images of what it does
-        not see stay unopened, and textures lose the levels that are too fine
-        for it. A draw of another picture makes up for it.
-        """
-        scene.update()
-        self._still = None
-        if still is not None:
-            self._still = StillPicture(scene, still, self.size)
-        self._describe(scene)
-
     def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
         """Record a frame of ``scene`` seen by ``camera`` into ``commands``.
 
@@ -158,10 +141,12 @@ class Renderer:
         cannot be had.
         """
         scene.update()
-        materials = self._describe(scene, camera)
+        materials = self._materials.describe(scene, camera, self.size)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
+        # Before anything that may have to wait for images.
+        targets = self._update_targets()
         self._update_maps(scene, materials)
         lights = self._sources.rows(scene, view.position)
         capacity = light_capacity(len(lights)) if materials.has_lit else 0
@@ -171,7 +156,6 @@ class Renderer:
             capacity,
             logarithmic_depth=view.depth_range is not None,
         )
-        targets = self._update_targets()
         visible = np.flatnonzero(scene.visible(camera, width / height))
         if self._accumulates:
             self._progressive.begin(
@@ -225,7 +209,7 @@ class Renderer:
         from moka.renderer.surface_values import SurfaceValues, groups_of
 
         scene.update()
-        materials = self._describe(scene, camera)
+        materials = self._materials.describe(scene, camera, self.size)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -235,7 +219,7 @@ class Renderer:
                 self._frame,
                 self._programs,
                 self._geometry,
-                self._textures,
+                self._materials.textures,
             )
         commands.fill_buffer(
             self._frame,
@@ -316,35 +300,6 @@ class Renderer:
             framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
         )
 
-    def _describe(
-        self, scene: Scene, camera: Camera | None = None
-    ) -> SceneMaterials:
-        """The materials of ``scene``, all unless ``camera`` is the still."""
-        if (
-            camera is not None
-            and self._still is not None
-            and not self._still.shows(scene, camera, self.size)
-        ):
-            self._still = None
-        key = (id(scene), scene.structure_version, self._still)
-        if self._materials is None or self._materials_key != key:
-            self.statistics.count("textures_loaded", 0)
-            self.statistics.count("textures_reduced", 0)
-            self._materials = SceneMaterials(
-                scene.drawables.primitives, self._textures, self._still
-            )
-            self._materials_key = key
-            images = {
-                id(texture.image)
-                for model in scene.models
-                for material in model.model.materials
-                for texture in material.textures
-            }
-            self.statistics.set_count(
-                "textures_skipped", len(images - self._materials.sampled)
-            )
-        return self._materials
-
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
         changed = self._sources.update_maps(
             scene.environment,
@@ -384,7 +339,7 @@ class Renderer:
             else settings.ibl,
             logarithmic_depth,
         )
-        key = (self._materials_key, lighting)
+        key = (self._materials.key, lighting)
         if self._prepared is not None and self._prepared_key == key:
             return self._prepared
         if self._prepared is not None:
@@ -403,7 +358,7 @@ class Renderer:
             ),
             self._programs,
             self._geometry,
-            self._textures,
+            self._materials.textures,
         )
         self._prepared_key = key
         self._gatherer = DrawGatherer(scene.drawables, self._prepared)

@@ -28,11 +28,8 @@ from moka.lighting.environment_maps import EnvironmentMaps
 from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.permutation import LightingDescription
-from moka.renderer.prepared_scene import (
-    PreparedScene,
-    SceneMaterials,
-    SharedBindings,
-)
+from moka.renderer.prepared_scene import PreparedScene, SharedBindings
+from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.textures import TexturePool
 from moka.renderer.view import View
 from moka.scene.scene import Scene

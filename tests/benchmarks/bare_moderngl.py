@@ -212,6 +212,24 @@ def stage(name: str) -> Iterator[None]:
     stages[name] = stages.get(name, 0.0) + (time.perf_counter() - start) * 1e3
 
 
+def claim_heap() -> None:
+    """Have threads share a heap that keeps freed blocks (glibc alone).
+
+    In huge pages, so that the kernel clears 2 MiB at a time and not 4 KiB.
+    """
+    libc = ctypes.CDLL(None)
+    libc.sbrk.restype = libc.malloc.restype = POINTER
+    arenas, largest, trim, padding = -8, -3, -1, -2
+    huge, heap = 1 << 21, 1 << 30
+    libc.mallopt(arenas, 1)
+    libc.mallopt(largest, 1 << 25)
+    libc.mallopt(trim, (1 << 31) - 1)
+    libc.mallopt(padding, heap)
+    start = -(-libc.sbrk(0) // huge) * huge
+    libc.free(POINTER(libc.malloc(huge)))
+    libc.madvise(POINTER(start), ctypes.c_size_t(heap), 14)
+
+
 # --- Files and pixels: in worker threads -----------------------------------
 
 
@@ -757,6 +775,8 @@ def arguments() -> argparse.Namespace:
 
 def main() -> None:
     """Start the work in other threads, draw, write the files."""
+    if sys.platform == "linux":
+        claim_heap()
     options = arguments()
     width, height = size = tuple(map(int, options.size.split("x")))
     samples = options.samples if options.samples > 1 else 0

@@ -14,8 +14,8 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.material.material import Material, Texture
 from moka.model import model_of, quad, sphere
+from moka.renderer.material_pool import MaterialPool
 from moka.renderer.renderer import Renderer
-from moka.renderer.settings import RenderSettings
 from tests.support.pictures import encoded, placed_at, scene_of, square_camera
 
 pytestmark = pytest.mark.gpu
@@ -102,10 +102,12 @@ def test_another_picture_gets_what_the_first_did_without(
     pictures = []
     for first, levels in ((far, 1), (near, 0)):
         statistics = Statistics()
+        materials = MaterialPool(egl_device, statistics)
+        scene.update()
+        materials.begin(scene, first, (64, 64))
         renderer = Renderer(
-            egl_device, (64, 64), RenderSettings(), statistics=statistics
+            egl_device, (64, 64), statistics=statistics, materials=materials
         )
-        renderer.begin(scene, first)
         for camera in (first, near):
             commands = CommandList()
             renderer.draw(scene, camera, commands)
