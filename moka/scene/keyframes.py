@@ -22,7 +22,7 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.interpolation import hermite, lerp, slerp
-from moka.core.maths import Array, normalise
+from moka.core.maths import Array
 from moka.model.animation import AnimationChannel, Interpolation, Property
 from moka.scene.forest import Rows
 
@@ -163,13 +163,13 @@ class _Group(Struct, frozen=True, eq=False):
         before = self.offsets + moment.before[self.sets]
         first = self.values[before].astype(np.float64)
         if self.interpolation is Interpolation.STEP:
-            return normalise(first) if turns else first
+            return _unit(first) if turns else first
         after = self.offsets + moment.after[self.sets]
         second = self.values[after].astype(np.float64)
         fraction = moment.fraction[self.sets]
         if self.interpolation is Interpolation.LINEAR:
             if turns:
-                return slerp(normalise(first), normalise(second), fraction)
+                return slerp(_unit(first), _unit(second), fraction)
             return lerp(first, second, fraction)
         values = hermite(
             first[:, 1],
@@ -179,7 +179,7 @@ class _Group(Struct, frozen=True, eq=False):
             fraction,
             moment.span[self.sets],
         )
-        return normalise(values) if turns else values
+        return _unit(values) if turns else values
 
 
 def _offsets(
@@ -191,3 +191,13 @@ def _offsets(
     counts = np.array([len(channels[index].times) for index in indices])
     first = np.cumsum(counts) - counts
     return np.asarray(first - timeline.starts[timeline.numbers[indices]])
+
+
+def _unit(quaternions: Array) -> Array:
+    """Quaternions (G, 4) of length 1; that of length 0, no turn, stays.
+
+    Squares of float32 numbers neither vanish nor overflow in float64.
+    """
+    squared = np.einsum("ij,ij->i", quaternions, quaternions)
+    length = np.sqrt(squared)[:, None]
+    return np.asarray(quaternions / np.where(length > 0, length, 1))

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from msgspec.structs import replace
-from numpy.typing import NDArray
 
-from moka.core.maths import Array, compose
+from moka.core.maths import compose
 from moka.model.animation import Property
 from moka.scene.forest import Rows
 from moka.scene.pose import Pose, PoseLayout
@@ -20,6 +19,7 @@ __all__ = ["PosedModel"]
 _TRANSLATION: Property = ("node", "translation")
 _ROTATION: Property = ("node", "rotation")
 _SCALE: Property = ("node", "scale")
+_TRANSFORM = (_TRANSLATION, _ROTATION, _SCALE)
 _WEIGHTS: Property = ("node", "weights")
 
 
@@ -37,19 +37,21 @@ class PosedModel:
 
     def take(self, pose: Pose) -> None:
         """Take the pose; it must not change afterwards."""
-        changed = {
-            property_: rows
+        before, self._pose = self._pose, pose
+        if before is pose:
+            return
+        differs = {
+            property_: (column != before[property_]).any(axis=1)
             for property_, column in pose.items()
-            if (rows := _differing(column, self._pose[property_])).size
         }
-        self._pose = pose
-        moved = [
-            changed.pop(name)
-            for name in (_TRANSLATION, _ROTATION, _SCALE)
-            if name in changed
-        ]
+        moved = [differs.pop(name) for name in _TRANSFORM if name in differs]
         if moved:
-            self._move(np.unique(np.concatenate(moved)))
+            self._move(np.flatnonzero(np.logical_or.reduce(moved)))
+        changed = {
+            property_: np.flatnonzero(which)
+            for property_, which in differs.items()
+            if which.any()
+        }
         weights = changed.pop(_WEIGHTS, None)
         if weights is not None and self._model.morph_weights is not None:
             self._model.morph_weights.write(
@@ -63,6 +65,9 @@ class PosedModel:
                 self._camera(thing, values)
 
     def _move(self, places: Rows) -> None:
+        """Write the matrices of nodes, which are made of all three parts."""
+        if not places.size:
+            return
         pose = self._pose
         nodes = self._layout.things[_TRANSLATION][places]
         self._model.transform.tree.set_local(
@@ -101,11 +106,3 @@ class PosedModel:
         for camera, (_, own) in zip(self._model.cameras, placed, strict=False):
             if own == number:
                 camera.projection = replace(camera.projection, **values)
-
-
-def _differing(new: Array, old: Array) -> Rows:
-    """Rows of two columns that are not the same."""
-    if new is old:
-        return np.empty(0, np.intp)
-    different: NDArray[np.bool_] = (new != old).any(axis=1)
-    return np.flatnonzero(different)
