@@ -50,7 +50,9 @@ class Material(Struct, frozen=True, eq=False):
     strength of KHR_materials_emissive_strength. Base colour and emissive
     textures are sRGB-encoded, the others are data: metalness is blue and
     roughness green of one texture, occlusion is red. ``animated`` names what
-    animations change of it, such as ``normal_texture.offset``.
+    animations change of it, such as ``normal_texture.offset``. ``coarser``
+    are the levels of detail below this one, ``limits`` the least parts of
+    the picture at which it and each of them is drawn (MSFT_lod).
     """
 
     name: str = ""
@@ -70,6 +72,8 @@ class Material(Struct, frozen=True, eq=False):
     double_sided: bool = False
     unlit: bool = False
     animated: frozenset[str] = frozenset()
+    coarser: "tuple[Material, ...]" = ()
+    limits: tuple[float, ...] = ()
 
     @property
     def textures(self) -> tuple[Texture, ...]:

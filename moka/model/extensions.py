@@ -6,6 +6,7 @@ from moka.model.uri import quote
 __all__ = ["SUPPORTED_EXTENSIONS", "check_required", "unsupported_extensions"]
 
 SUPPORTED_EXTENSIONS: dict[str, str] = {
+    "EXT_mesh_gpu_instancing": "a mesh at many places of one node",
     "EXT_meshopt_compression": "vertices and indices of meshoptimizer",
     "EXT_texture_avif": "AVIF images",
     "EXT_texture_webp": "WebP images",
@@ -14,9 +15,12 @@ SUPPORTED_EXTENSIONS: dict[str, str] = {
     "KHR_lights_punctual": "directional, point and spot lights",
     "KHR_materials_emissive_strength": "emission beyond 1",
     "KHR_materials_unlit": "materials of constant radiance",
+    "KHR_materials_variants": "other materials by the name of a variant",
     "KHR_mesh_quantization": "vertex attributes of 8 and 16 bits",
     "KHR_meshopt_compression": "the same, with a filter for colours",
+    "KHR_node_visibility": "nodes hidden with all below them",
     "KHR_texture_transform": "offset, rotation and scale of textures",
+    "MSFT_lod": "levels of detail of nodes and materials",
 }
 
 

@@ -5,6 +5,7 @@ spots shine down its -Z axis.
 """
 
 import math
+from collections.abc import Sequence
 from enum import Enum
 from typing import Literal
 
@@ -13,7 +14,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.model.schema import Vector3, read_extension
+from moka.model.schema import Node, Vector3, read_extension
 from moka.model.source import GltfSource
 
 __all__ = ["LightKind", "PunctualLight", "read_lights", "read_node_lights"]
@@ -81,16 +82,16 @@ def read_lights(source: GltfSource) -> list[PunctualLight]:
     ]
 
 
-def read_node_lights(source: GltfSource, count: int) -> NDArray[np.int32]:
+def read_node_lights(
+    source: GltfSource, nodes: Sequence[tuple[int, Node]], count: int
+) -> NDArray[np.int32]:
     """For each node of the file the light that it places, -1 for none.
 
-    Raises ModelError if that is not one of the ``count`` lights.
+    ``nodes`` are those with extensions, each with its index. Raises
+    ModelError if a light is not one of ``count``.
     """
-    nodes = source.document.nodes
-    indices = np.full(len(nodes), -1, np.int32)
-    for index, node in enumerate(nodes):
-        if node.extensions is None:
-            continue
+    indices = np.full(len(source.document.nodes), -1, np.int32)
+    for index, node in nodes:
         path = f"nodes[{index}]"
         light = read_extension(node, _EXTENSION, _NodeLight, source.where, path)
         if light is not None:

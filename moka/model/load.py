@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from moka.model.cameras import read_cameras
 from moka.model.extensions import check_required, unsupported_extensions
 from moka.model.lights import read_lights
@@ -10,6 +12,7 @@ from moka.model.nodes import NodeTree, read_nodes
 from moka.model.read_materials import read_materials
 from moka.model.read_meshes import read_meshes
 from moka.model.source import GltfSource, ModelSource, open_source
+from moka.model.variants import read_variant_names
 
 if TYPE_CHECKING:
     from moka.model.animation import Animation
@@ -17,8 +20,11 @@ if TYPE_CHECKING:
 __all__ = ["load_model"]
 
 
-def load_model(source: ModelSource) -> Model:
+def load_model(source: ModelSource, *, scene: int | str | None = None) -> Model:
     """Read a glTF 2.0 model: .gltf, .glb, their bytes or a pygltflib.GLTF2.
+
+    ``scene``, a name or an index, becomes the model's default scene in place
+    of the one that the file names.
 
     Vertex data is not copied where the file has it as floats, images are
     neither decoded nor, if they are files, opened. Raises ModelError, naming
@@ -58,6 +64,7 @@ def load_model(source: ModelSource) -> Model:
         omitted=_omitted(opened, still),
         animations=animations,
         rest_pose=rest_pose,
+        variants=read_variant_names(opened),
     )
     if document.skins:
         from moka.model.skins import check_skinned, read_skins
@@ -69,23 +76,32 @@ def load_model(source: ModelSource) -> Model:
             "scene", document.scene, "scenes", len(document.scenes)
         )
         model.default_scene = document.scene
+    model.default_scene = model.scene_index(scene)
     return model
 
 
 def _read_scenes(source: GltfSource, nodes: NodeTree) -> list[list[int]]:
     """The rows of each scene's roots; all roots if there are no scenes."""
-    rows = {index: row for row, index in enumerate(nodes.source.tolist())}
-    is_root = nodes.parents < 0
+    rows = nodes.rows_of_file()
     if not source.document.scenes:
-        return [[row for row in rows.values() if is_root[row]]]
+        return [np.flatnonzero(nodes.parents < 0).tolist()]
     scenes = []
     for index, scene in enumerate(source.document.scenes):
-        for number, node in enumerate(scene.nodes):
-            path = f"scenes[{index}].nodes[{number}]"
-            source.check_index(path, node, "nodes", len(nodes))
-            if not is_root[rows[node]]:
-                raise source.error(path, f"nodes[{node}] has a parent")
-        scenes.append([rows[node] for node in scene.nodes])
+        listed = np.array(scene.nodes, np.int64)
+        for number in np.flatnonzero(listed >= len(rows)).tolist():
+            source.check_index(
+                f"scenes[{index}].nodes[{number}]",
+                scene.nodes[number],
+                "nodes",
+                len(rows),
+            )
+        roots = rows[listed]
+        for number in np.flatnonzero(nodes.parents[roots] >= 0).tolist():
+            raise source.error(
+                f"scenes[{index}].nodes[{number}]",
+                f"nodes[{scene.nodes[number]}] has a parent",
+            )
+        scenes.append(nodes.with_levels(roots).tolist())
     return scenes
 
 

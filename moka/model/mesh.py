@@ -72,20 +72,25 @@ class Primitive:
     None, ``targets`` are morph targets or None, ``material`` is None for
     glTF's default.
     ``vertex_count``, ``index_count`` and ``bounds``, the least and the
-    greatest position, stay after :meth:`release`.
+    greatest position, stay after :meth:`release`. ``variants`` are materials
+    by the number of the model's variant in which they take the place of
+    ``material``. ``geometry`` is the same object for all that share arrays.
 
     Raises ModelError for attributes or indices of a wrong shape, positions
     that are not finite, and indices of vertices that do not exist.
     """
 
     __slots__ = (
+        "_shared",
         "attributes",
         "bounds",
+        "geometry",
         "index_count",
         "indices",
         "material",
         "targets",
         "topology",
+        "variants",
         "vertex_count",
     )
 
@@ -103,6 +108,9 @@ class Primitive:
         self.topology = topology
         self.material = material
         self.targets = targets
+        self.variants: dict[int, Material] = {}
+        self.geometry = object()
+        self._shared: dict[Material, Primitive] = {}
         self.attributes: dict[str, NDArray[np.float32]] = {
             name: np.asarray(attributes[name], np.float32)
             for name in ATTRIBUTES
@@ -163,6 +171,7 @@ class Primitive:
             setattr(copy, name, getattr(self, name))
         copy.attributes = dict(self.attributes)
         copy.material = material
+        copy._shared = {}
         return copy
 
     def as_rigid(self) -> "Primitive":
@@ -174,6 +183,24 @@ class Primitive:
             if name not in INFLUENCES
         }
         return copy
+
+    def of_variant(self, variant: int | None) -> "Primitive":
+        """The primitive in a variant of its model, itself if none is named.
+
+        Asked again it is the same object, so that what was prepared for it
+        is found.
+        """
+        if variant is None or variant not in self.variants:
+            return self
+        return self.shared_with(self.variants[variant])
+
+    def shared_with(self, material: Material) -> "Primitive":
+        """As :meth:`with_material`, but the same object for each material."""
+        if material is self.material:
+            return self
+        if material not in self._shared:
+            self._shared[material] = self.with_material(material)
+        return self._shared[material]
 
     def release(self) -> None:
         """Drop the arrays, for instance once the GPU holds them."""

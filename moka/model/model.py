@@ -1,5 +1,6 @@
 """A model: what a glTF file says, on the CPU."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,6 +35,7 @@ class Model(Struct, eq=False):
     out, ``omitted`` counts other things that it does not draw, by name.
     ``skins`` are what ``nodes.skins`` number. ``rest_pose`` is where nodes
     are that ``animations`` move; without it their matrices are taken apart.
+    ``variants`` are the names of its variants of materials.
     """
 
     name: str
@@ -52,6 +54,45 @@ class Model(Struct, eq=False):
     animations: "list[Animation]" = []
     rest_pose: "RestPose | None" = None
     skins: "list[Skin]" = []
+    variants: tuple[str, ...] = ()
+
+    def scene_index(self, scene: int | str | None) -> int:
+        """The number of a scene that is named or numbered.
+
+        None is the default scene. Raises ModelError, listing the scenes, if
+        there is none such or there are several.
+        """
+        if scene is None:
+            return self.default_scene
+        return self._choice("scene", scene, self.scene_names)
+
+    def variant_index(self, variant: int | str | None) -> int | None:
+        """The number of a variant that is named or numbered, None for None.
+
+        Raises ModelError, listing the variants, if there is none such or
+        there are several.
+        """
+        if variant is None:
+            return None
+        return self._choice("variant", variant, self.variants)
+
+    def _choice(
+        self, what: str, choice: int | str, names: Sequence[str]
+    ) -> int:
+        where = self.path or self.name or "a model"
+        if isinstance(choice, str):
+            found = [i for i, name in enumerate(names) if name == choice]
+        else:
+            found = [choice] if 0 <= choice < len(names) else []
+        if len(found) == 1:
+            return found[0]
+        if not names:
+            raise ModelError(f"{where}: the model has no {what}s")
+        listed = ", ".join(f"{i} {name!r}" for i, name in enumerate(names))
+        raise ModelError(
+            f"{where}: there {'are several' if found else 'is no'} {what} "
+            f"{choice!r}; choose from {listed}"
+        )
 
     def instances(self, scene: int | None = None) -> Placements:
         """Rows of nodes that show a mesh, and the indices of their meshes.
@@ -87,13 +128,9 @@ class Model(Struct, eq=False):
             return union_bounds(transform_bounds(world, boxes[meshes[kept]]))
 
     def _placed(self, what: NDArray[np.int32], scene: int | None) -> Placements:
-        index = self.default_scene if scene is None else scene
-        if not 0 <= index < len(self.scenes):
-            raise ModelError(
-                f"{self.path or self.name}: there is no scene {index}, the "
-                f"model has {len(self.scenes)}"
-            )
-        inside = np.isin(self.nodes.roots(), self.scenes[index])
+        inside = np.isin(
+            self.nodes.roots(), self.scenes[self.scene_index(scene)]
+        )
         rows = np.flatnonzero(inside & (what >= 0)).astype(np.int32)
         return rows, what[rows]
 

@@ -83,8 +83,7 @@ class _AnimationReader:
         self._accessors = AccessorReader(source)
         self._light_count = light_count
         self._times: dict[int, NDArray[np.float32]] = {}
-        self._rows = np.empty(len(nodes), np.intp)
-        self._rows[nodes.source] = np.arange(len(nodes))
+        self._rows = nodes.rows_of_file()
 
     def animation(self, path: str, raw: msgspec.Raw) -> Animation:
         source = self._source

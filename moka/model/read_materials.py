@@ -7,6 +7,7 @@ KHR_texture_transform, KHR_materials_unlit, KHR_materials_emissive_strength.
 from typing import Annotated, Any
 
 import msgspec
+from msgspec.structs import replace
 
 from moka.material.material import (
     AlphaMode,
@@ -16,6 +17,7 @@ from moka.material.material import (
 )
 from moka.model import schema
 from moka.model.images import ImageReader, sampler_descriptor
+from moka.model.lods import read_levels
 from moka.model.schema import Vector2, Vector3, read_extension
 from moka.model.source import GltfSource
 
@@ -44,10 +46,23 @@ def read_materials(source: GltfSource) -> list[Material]:
     Raises ModelError naming the JSON path of what is wrong.
     """
     images = ImageReader(source)
-    return [
+    materials = [
         _read_material(source, images, f"materials[{index}]", material)
         for index, material in enumerate(source.document.materials)
     ]
+    # Finest levels last: the coarser ones are there then, without levels.
+    plain = materials.copy()
+    for index, material in enumerate(source.document.materials):
+        coarser, limits = read_levels(
+            source, material, f"materials[{index}]", "materials", len(plain)
+        )
+        if coarser:
+            materials[index] = replace(
+                plain[index],
+                coarser=tuple(plain[level] for level in coarser),
+                limits=tuple(limits),
+            )
+    return materials
 
 
 def emission_of(source: GltfSource, index: int) -> tuple[Vector3, float]:

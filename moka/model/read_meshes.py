@@ -21,6 +21,7 @@ from moka.model.mesh import (
     Primitive,
 )
 from moka.model.source import GltfSource
+from moka.model.variants import read_variant_materials
 
 if TYPE_CHECKING:
     from moka.model.draco import DecodedPrimitive
@@ -122,7 +123,7 @@ def _read_primitive(
         )
         material = materials[primitive.material]
     try:
-        return Primitive(
+        read = Primitive(
             attributes,
             indices,
             topology=topology,
@@ -131,6 +132,11 @@ def _read_primitive(
         )
     except ModelError as error:
         raise source.error(path, str(error)) from error
+    if primitive.extensions:
+        read.variants = read_variant_materials(
+            source, primitive, path, materials
+        )
+    return read
 
 
 def _read_attribute(

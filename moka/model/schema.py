@@ -58,6 +58,8 @@ Matrix4 = Annotated[list[float], Meta(min_length=16, max_length=16)]
 IndexType = Literal[5121, 5123, 5125]
 ComponentType = Literal[5120, 5121, 5122, 5123, 5125, 5126]
 AccessorType = Literal["SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"]
+# Of ``extras`` that are not there; what they hold is decoded when asked for.
+NOTHING = msgspec.Raw(b"null")
 WrapMode = Literal[10497, 33071, 33648]
 
 
@@ -141,6 +143,7 @@ class Node(Property):
     scale: Vector3 = (1.0, 1.0, 1.0)
     weights: list[float] = []
     name: str = ""
+    extras: msgspec.Raw = NOTHING
 
 
 class Skin(Property):
@@ -223,6 +226,7 @@ class Material(Property):
     alpha_cutoff: float = 0.5
     double_sided: bool = False
     name: str = ""
+    extras: msgspec.Raw = NOTHING
 
 
 class Document(Property):

@@ -92,14 +92,13 @@ def read_skins(source: GltfSource, nodes: NodeTree) -> list[Skin]:
     ``skeleton`` is only a hint for tools and changes nothing.
     """
     accessors = AccessorReader(source)
-    rows = np.empty(len(nodes), np.int32)
-    rows[nodes.source] = np.arange(len(nodes), dtype=np.int32)
+    rows = nodes.rows_of_file()
     skins = []
     for index, skin in enumerate(source.document.skins):
         path = f"skins[{index}]"
         for number, joint in enumerate(skin.joints):
             source.check_index(
-                f"{path}.joints[{number}]", joint, "nodes", len(nodes)
+                f"{path}.joints[{number}]", joint, "nodes", len(rows)
             )
         matrices = _inverse_bind(source, accessors, path, skin)
         skins.append(Skin(skin.name, rows[skin.joints], matrices))

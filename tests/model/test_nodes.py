@@ -252,7 +252,9 @@ class TestScenes:
     @pytest.mark.parametrize("scene", [1, -1])
     def test_there_must_be_such_a_scene(self, scene: int) -> None:
         model = load([{}], [{"nodes": [0]}])
-        with pytest.raises(ModelError, match=f"there is no scene {scene}"):
+        with pytest.raises(
+            ModelError, match=f"there is no scene {scene}; choose from 0 ''"
+        ):
             model.instances(scene)
 
     @pytest.mark.parametrize(
