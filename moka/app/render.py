@@ -47,6 +47,8 @@ class RenderRequest:
     levels of textures that are too fine for the picture. ``animation`` is a
     name or a position, None for the first one if there is any, ``time`` in
     seconds.
+    are names of :data:`moka.core.aov.AOVS`. ``scene`` and ``variant`` are a
+    name or an index in the file.
     """
 
     source: Any = None
@@ -62,6 +64,8 @@ class RenderRequest:
     full_textures: bool = False
     time: float = 0.0
     animation: str | int | None = None
+    scene: str | int | None = None
+    variant: str | int | None = None
 
 
 def render(
@@ -72,6 +76,8 @@ def render(
     camera: Any = None,
     time: float = 0.0,
     animation: str | int | None = None,
+    scene: str | int | None = None,
+    variant: str | int | None = None,
     background: Any = "environment",
     environment_rotation: float = 0.0,
     environment_intensity: float = 1.0,
@@ -106,7 +112,9 @@ def render(
     orbit that frames the model. An animated model has the pose of
     ``animation``, a name or a position in ``Model.animations`` (by default
     the first), at ``time`` seconds; an orbit frames it at 0 seconds.
-    ``background`` is ``environment``,
+    ``scene`` and ``variant`` choose a scene and a variant of materials of
+    the file by name or index, by default the scene that the file names and
+    no variant. ``background`` is ``environment``,
     ``transparent`` or ``#rrggbb``. ``exposure`` (EV) and ``tone_map`` are
     how the image shows itself; its pixels are neither exposed nor tone
     mapped. ``brdf`` is ``gltf`` (glTF 2.0 appendix B), ``karis`` or
@@ -167,6 +175,8 @@ def render(
             full_textures,
             time,
             animation,
+            scene,
+            variant,
         ),
         Statistics(),
         want_pixels=True,
@@ -232,12 +242,20 @@ def _render_with(
         scene.background = request.background
         scene.environment_rotation = request.environment_rotation
         scene.environment_intensity = request.environment_intensity
-        model = scene.add(_load_model(request.source))
+        model = scene.add(
+            _load_model(request.source),
+            scene=request.scene,
+            variant=request.variant,
+        )
         # An orbit frames the start, and so is the same at every time.
         _pose(model, request, 0.0)
         camera = _choose_camera(request, scene)
         _pose(model, request, request.time)
-        scene.update()
+        if request.full_textures:
+            scene.update()
+        else:
+            width, height = request.size
+            scene.narrow(camera, width / height)
     with closing(MaterialPool(device, statistics)) as materials:
         still = None if request.full_textures else camera
         materials.begin(scene, still, request.size)

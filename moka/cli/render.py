@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from moka.core.errors import OptionError
-from moka.core.option_text import count, number, size
+from moka.core.option_text import count, name_or_index, number, size
 
 if TYPE_CHECKING:
     from moka.app.render import RenderRequest
@@ -85,6 +85,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--animation",
         metavar="NAME|INDEX",
         help="which animation poses the model (default: the first)",
+    )
+    add(
+        "--scene",
+        metavar="SCENE",
+        type=name_or_index,
+        help="name or index of a scene (default: the one that the file names)",
+    )
+    add(
+        "--variant",
+        metavar="VARIANT",
+        type=name_or_index,
+        help="name or index of a variant of materials (default: none)",
     )
     add(
         "--exposure",
@@ -286,6 +298,8 @@ def _request(
         full_textures=arguments.full_textures,
         time=arguments.time,
         animation=arguments.animation,
+        scene=arguments.scene,
+        variant=arguments.variant,
     )
 
 

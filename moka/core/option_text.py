@@ -3,7 +3,7 @@
 import argparse
 import math
 
-__all__ = ["LARGEST_SIDE", "count", "number", "size"]
+__all__ = ["LARGEST_SIDE", "count", "name_or_index", "number", "size"]
 
 #: Pixels along a side of a picture; what drivers of GL 4 can draw into.
 LARGEST_SIDE = 16384
@@ -40,3 +40,8 @@ def count(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not 1, 2, 3, ...")
     return int(text)
+
+
+def name_or_index(text: str) -> str | int:
+    """The number that a text is, else the text as a name."""
+    return int(text) if text.isdecimal() else text

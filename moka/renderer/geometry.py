@@ -7,7 +7,7 @@ uploaded.
 """
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -40,9 +40,9 @@ _ATTRIBUTES = {
 
 
 class _Key(Struct, frozen=True):
-    """A primitive and the attributes of it that are uploaded."""
+    """A primitive's geometry and the attributes of it that are uploaded."""
 
-    primitive: Primitive
+    geometry: object
     wanted: tuple[str, ...]
 
 
@@ -71,20 +71,25 @@ class GeometryPool:
 
         What is missing is uploaded; what is not asked for again is freed.
         """
-        keys = [_Key(*each) for each in wanted]
+        keys = [
+            _Key(primitive.geometry, attributes)
+            for primitive, attributes in wanted
+        ]
         used = set(keys)
         for upload in list(self._uploads):
             if used.isdisjoint(upload.meshes):
                 self._free(upload)
-        missing = [
-            key for key in dict.fromkeys(keys) if key not in self._meshes
-        ]
-        groups: dict[tuple[tuple[str, ...], bool], list[_Key]] = defaultdict(
-            list
+        missing = {
+            key: primitive
+            for key, (primitive, _) in zip(keys, wanted, strict=True)
+            if key not in self._meshes
+        }
+        groups: dict[tuple[tuple[str, ...], bool], dict[_Key, Primitive]] = (
+            defaultdict(dict)
         )
-        for key in missing:
-            indexed = key.primitive.indices is not None
-            groups[key.wanted, indexed].append(key)
+        for key, primitive in missing.items():
+            indexed = primitive.indices is not None
+            groups[key.wanted, indexed][key] = primitive
         for members in groups.values():
             upload = _upload(self._device, members)
             self._uploads.append(upload)
@@ -111,24 +116,27 @@ def vertex_layout(wanted: Sequence[str]) -> VertexLayout:
     return VertexLayout(tuple(attributes), offset)
 
 
-def _upload(device: GraphicsDevice, members: Sequence[_Key]) -> _Upload:
+def _upload(
+    device: GraphicsDevice, members: Mapping[_Key, Primitive]
+) -> _Upload:
     """One vertex and one index buffer for primitives of one layout."""
-    layout = vertex_layout(members[0].wanted)
+    wanted = next(iter(members)).wanted
+    layout = vertex_layout(wanted)
     vertex_buffer = _buffer(
         device,
         BufferUsage.VERTEX,
-        np.concatenate([_interleave(key) for key in members]),
+        _interleave(list(members.values()), wanted, layout.stride // 4),
     )
     buffers = [vertex_buffer]
     index_buffer, index_type = None, IndexType.UINT32
     indices = [
-        key.primitive.indices
-        for key in members
-        if key.primitive.indices is not None
+        primitive.indices
+        for primitive in members.values()
+        if primitive.indices is not None
     ]
     if indices:
         # 16 bits if every primitive's own vertices can be counted with them.
-        if max(key.primitive.vertex_count for key in members) <= 0xFFFF:
+        if max(each.vertex_count for each in members.values()) <= 0xFFFF:
             index_type = IndexType.UINT16
         joined = np.concatenate(
             indices, dtype=index_type.value, casting="unsafe"
@@ -137,8 +145,7 @@ def _upload(device: GraphicsDevice, members: Sequence[_Key]) -> _Upload:
         buffers.append(index_buffer)
     meshes = {}
     base_vertex = first = 0
-    for key in members:
-        primitive = key.primitive
+    for key, primitive in members.items():
         count = primitive.index_count or primitive.vertex_count
         meshes[key] = device.create_mesh(
             MeshDescriptor(
@@ -157,16 +164,24 @@ def _upload(device: GraphicsDevice, members: Sequence[_Key]) -> _Upload:
     return _Upload(meshes, buffers)
 
 
-def _interleave(key: _Key) -> NDArray[np.float32]:
-    columns = [key.primitive.attributes[name] for name in key.wanted]
-    vertices = np.empty(
-        (key.primitive.vertex_count, sum(c.shape[1] for c in columns)),
-        np.float32,
-    )
-    start = 0
-    for column in columns:
-        vertices[:, start : start + column.shape[1]] = column
-        start += column.shape[1]
+def _interleave(
+    primitives: Sequence[Primitive], wanted: Sequence[str], width: int
+) -> NDArray[np.float32]:
+    """Their vertices one after the other, ``width`` floats each.
+
+    Written straight to their place: a cloud of ten million points is not
+    copied twice.
+    """
+    count = sum(primitive.vertex_count for primitive in primitives)
+    vertices = np.empty((count, width), np.float32)
+    end = 0
+    for primitive in primitives:
+        first, end = end, end + primitive.vertex_count
+        column = 0
+        for name in wanted:
+            array = primitive.attributes[name]
+            vertices[first:end, column : column + array.shape[1]] = array
+            column += array.shape[1]
     return vertices.reshape(-1)
 
 

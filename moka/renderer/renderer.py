@@ -503,7 +503,7 @@ class Renderer:
     def _count(
         self, scene: Scene, prepared: PreparedScene, visible: int
     ) -> None:
-        objects = len(scene.drawables)
+        objects = scene.drawables.total
         for name, value in (
             ("objects", objects),
             ("visible", visible),

@@ -5,6 +5,7 @@ that moved are all that is computed.
 """
 
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,11 @@ from moka.core.maths import Array, is_mirrored, transform_bounds, union_bounds
 from moka.model.mesh import Primitive
 from moka.model.model import Model
 from moka.scene.forest import Rows
+from moka.scene.level_of_detail import (
+    joined_levels,
+    material_levels,
+    node_levels,
+)
 from moka.scene.transforms import TransformTree, check_affine
 
 if TYPE_CHECKING:
@@ -29,26 +35,33 @@ class ModelLayout:
 
     ``primitives`` are those of the meshes in use. Of D draws, ``node`` (D,)
     is the row in the model's nodes, ``primitive`` (D,) the position in
-    ``primitives`` and ``bounds`` (D, 2, 3) the box in the node's space.
+    ``primitives`` and ``bounds`` (D, 2, 3) the box in the node's space;
+    ``levels`` are their levels of detail, None without any.
     ``cameras`` and ``lights`` are pairs of a node's row and what it places.
-    Copies of a model in one scene share all this.
+    Copies of a model in one scene and variant share all this.
 
     Raises ModelError if the model has no such scene, or nodes whose matrices
     are not affine.
     """
 
-    def __init__(self, model: Model, scene: int | None) -> None:
+    def __init__(
+        self, model: Model, scene: int, variant: int | None = None
+    ) -> None:
         try:
             check_affine(model.nodes.local, (len(model.nodes),))
         except OptionError as error:
             where = model.path or model.name or "a model"
             raise ModelError(f"{where}: nodes: {error}") from error
         self.model = model
+        self.scene = scene
+        self.variant = variant
         nodes, instances = model.instances(scene)
         used, mesh = np.unique(instances, return_inverse=True)
         meshes = [model.meshes[index].primitives for index in used.tolist()]
         self.primitives: list[Primitive] = [
-            primitive for primitives in meshes for primitive in primitives
+            primitive.of_variant(variant)
+            for primitives in meshes
+            for primitive in primitives
         ]
         count = np.array([len(primitives) for primitives in meshes], np.intp)
         first = np.cumsum(count) - count
@@ -57,9 +70,15 @@ class ModelLayout:
         within = np.arange(draws.sum()) - np.repeat(before, draws)
         self.cameras = _pairs(model.camera_instances(scene))
         self.lights = _pairs(model.light_instances(scene))
+        node = np.repeat(nodes.astype(np.intp), draws)
+        self.primitives, self.primitive, copied, levels = material_levels(
+            self.primitives, np.repeat(first[mesh], draws) + within
+        )
+        self.node: Rows = node[copied]
+        self.levels = joined_levels(
+            [(levels, 0), (node_levels(model.nodes, self.node), 0)]
+        )
         boxes = [primitive.bounds for primitive in self.primitives]
-        self.node: Rows = np.repeat(nodes.astype(np.intp), draws)
-        self.primitive: Rows = np.repeat(first[mesh], draws) + within
         self.bounds: Array = np.reshape(
             np.array(boxes, np.float64), (-1, 2, 3)
         )[self.primitive]
@@ -72,6 +91,18 @@ class ModelLayout:
         return Clips(self.model)
 
 
+# What a row of Drawables has.
+_COLUMNS = (
+    "primitive",
+    "row",
+    "owner",
+    "local_bounds",
+    "world_bounds",
+    "mirrored",
+    "object",
+)
+
+
 class Drawables:
     """The draws of all models of a scene, D of them.
 
@@ -82,7 +113,9 @@ class Drawables:
     node, counted on from model to model. ``local_bounds`` and
     ``world_bounds`` are float64 (D, 2, 3), least and greatest corner;
     ``mirrored`` (D,) tells where the world matrix turns front faces
-    clockwise. The last two are as of the last :meth:`refresh`.
+    clockwise. The last two are as of the last :meth:`refresh`. ``levels``
+    are the levels of detail that draws belong to, None without any;
+    ``total`` is how many draws there were before :meth:`only`.
     """
 
     def __init__(
@@ -110,6 +143,14 @@ class Drawables:
         self.local_bounds: Array = np.concatenate(
             [np.empty((0, 2, 3)), *(layout.bounds for layout in layouts)]
         )
+        self.levels = joined_levels(
+            zip(
+                (layout.levels for layout in layouts),
+                np.searchsorted(self.owner, np.arange(len(layouts))).tolist(),
+                strict=True,
+            )
+        )
+        self.total = len(self.row)
         self.world_bounds: Array = np.zeros_like(self.local_bounds)
         self.mirrored: NDArray[np.bool_] = np.zeros(len(self.row), np.bool_)
         self._version = -1  # Of the transforms; none is that old.
@@ -132,6 +173,19 @@ class Drawables:
                 world, self.local_bounds[draws]
             )
             self.mirrored[draws] = is_mirrored(world)
+
+    def only(self, kept: NDArray[np.bool_]) -> "Drawables":
+        """These draws without those that are not ``kept`` (D,).
+
+        Levels of detail are settled: what is kept is shown.
+        """
+        made = copy(self)
+        made.levels = None
+        for name in _COLUMNS:
+            setattr(made, name, getattr(self, name)[kept])
+        used, made.primitive = np.unique(made.primitive, return_inverse=True)
+        made.primitives = [self.primitives[index] for index in used.tolist()]
+        return made
 
     def bounds(self, shown: NDArray[np.bool_]) -> Array | None:
         """The world box (2, 3) of the draws ``shown`` (D,), None of none."""

@@ -60,10 +60,11 @@ class Scene:
         self._lights: list[Light] = []
         self._players: dict[SceneModel, AnimationPlayer] = {}
         # Layouts live as long as a copy of their model, whose id is the key.
-        self._layouts: WeakValueDictionary[tuple[int, int], ModelLayout] = (
-            WeakValueDictionary()
-        )
+        self._layouts: WeakValueDictionary[
+            tuple[int, int, int | None], ModelLayout
+        ] = WeakValueDictionary()
         self._built = (0, 0)
+        self._hidden_version = 0
 
     @property
     def background(self) -> Background:
@@ -116,23 +117,25 @@ class Scene:
         model: Model,
         transform: Transform | ArrayLike | None = None,
         *,
-        scene: int | None = None,
+        scene: int | str | None = None,
+        variant: int | str | None = None,
     ) -> SceneModel:
         """Put a model into the scene; the same one as often as needed.
 
         ``transform`` becomes that of the whole model: a Transform, which
         joins this scene, or an affine (4, 4) matrix. ``scene`` is which
-        scene of the file, by default the one that the file names. Arrays of
-        the model are read now; later changes to it go unseen.
+        scene of the file, by name or index, by default the one that the file
+        names; ``variant`` which of its variants of materials, by default
+        none. Arrays of the model are read now; later changes to it go
+        unseen.
 
         Raises OptionError for a transform that belongs to another scene or
-        already moves a model, ModelError for a scene that is not there.
+        already moves a model, ModelError for a scene or a variant that is
+        not there.
         """
-        number = model.default_scene if scene is None else scene
-        layout = self._layouts.get((id(model), number))
-        if layout is None:
-            layout = ModelLayout(model, number)
-            self._layouts[id(model), number] = layout
+        layout = self.layout_of(
+            model, model.scene_index(scene), model.variant_index(variant)
+        )
         place = self._joined(transform)
         if place.row in self._model_rows:
             raise OptionError(
@@ -144,6 +147,16 @@ class Scene:
         self._model_rows.update(added.rows.tolist(), [place.row])
         self.structure_version += 1
         return added
+
+    def layout_of(
+        self, model: Model, scene: int, variant: int | None
+    ) -> ModelLayout:
+        """The layout that all copies of a model share, made if need be."""
+        key = (id(model), scene, variant)
+        layout = self._layouts.get(key)
+        if layout is None:
+            layout = self._layouts[key] = ModelLayout(model, scene, variant)
+        return layout
 
     def add_light(
         self,
@@ -217,10 +230,15 @@ class Scene:
                 [model.rows for model in models],
             )
         self.drawables.refresh(self.transforms)
+        if self._hidden_version != self.transforms.hidden_version:
+            self._hidden_version = self.transforms.hidden_version
+            self.visibility_version += 1
         now = self.structure_version, self.visibility_version
         if self._built != now:
             visible = np.array([model.visible for model in models], np.bool_)
+            hidden = self.transforms.hidden()
             self.shown = visible[self.drawables.owner]
+            self.shown &= ~hidden[self.drawables.row]
             self._built = now
 
     def visible(self, camera: Camera, aspect: float) -> NDArray[np.bool_]:
@@ -229,9 +247,26 @@ class Scene:
         As of the last :meth:`update`.
         """
         planes = camera.frustum_planes(aspect)
-        return self.shown & boxes_in_frustum(
-            planes, self.drawables.world_bounds
-        )
+        drawables = self.drawables
+        visible = self.shown & boxes_in_frustum(planes, drawables.world_bounds)
+        if drawables.levels is not None:
+            visible &= drawables.levels.shown(
+                drawables.world_bounds, camera, aspect
+            )
+        return visible
+
+    def narrow(self, camera: Camera, aspect: float) -> None:
+        """Forget all draws that ``camera`` does not see, for one picture.
+
+        Nothing is decoded or uploaded for them then. They are back when a
+        model comes, goes or changes its variant.
+        """
+        self.update()
+        visible = self.visible(camera, aspect)
+        self.drawables = self.drawables.only(visible)
+        self.shown = self.shown[visible]
+        self.structure_version += 1
+        self._built = self.structure_version, self.visibility_version
 
     def bounds(self) -> Array | None:
         """The world box (2, 3) of the visible models; None without any."""
@@ -252,6 +287,10 @@ class Scene:
             if light.visible
         ]
         shining += [light for light in self._lights if light.visible]
+        hidden = self.transforms.hidden()
+        shining = [
+            light for light in shining if not hidden[light.transform.row]
+        ]
         rows = [light.transform.row for light in shining]
         return pack_lights(
             [light.description for light in shining],

@@ -40,6 +40,9 @@ class SceneModel:
         self.rows: Rows = transform.tree.add_many(
             model.nodes.local, model.nodes.parents, transform.row
         )
+        if len(model.nodes.hidden):
+            hidden = self.rows[model.nodes.hidden]
+            transform.tree.set_visible(hidden, False)
         self.cameras = [
             self._camera(node, camera) for node, camera in layout.cameras
         ]
@@ -75,6 +78,25 @@ class SceneModel:
             self._player = AnimationPlayer(self, self.layout.clips)
             self._scene.add_player(self, self._player)
         return self._player
+
+    @property
+    def variant(self) -> str | None:
+        """The variant of materials that it is drawn in, None for none.
+
+        Takes a name or an index in ``model.variants``; geometry stays on the
+        GPU. Raises ModelError, listing the variants, for another.
+        """
+        number = self.layout.variant
+        return None if number is None else self.model.variants[number]
+
+    @variant.setter
+    def variant(self, value: str | int | None) -> None:
+        number = self.model.variant_index(value)
+        if number != self.layout.variant:
+            self.layout = self._scene.layout_of(
+                self.model, self.layout.scene, number
+            )
+            self._scene.structure_version += 1
 
     def node(self, node: int | str) -> Transform:
         """The transform of a node, by its row in ``model.nodes`` or name.

@@ -104,6 +104,19 @@ class Transform:
         return self._row
 
     @property
+    def visible(self) -> bool:
+        """Whether its own mark lets it and what is below it be seen.
+
+        What is below a transform that is not visible is not drawn and sheds
+        no light, whatever its own mark says; cameras there still see.
+        """
+        return self.tree.is_visible(self.row)
+
+    @visible.setter
+    def visible(self, value: bool) -> None:
+        self.tree.set_visible(self.row, value)
+
+    @property
     def position(self) -> Any:
         """Position in metres, ``glm.vec3``; takes any (x, y, z)."""
         return pyglm().vec3(self._current()[0])

@@ -35,13 +35,15 @@ class TransformTree:
 
     Matrices are float64 (4, 4), indexed [row, column], local to parent and
     local to world. Rows are numbered in no order; freed ones are used again.
-    ``version`` counts the updates that changed a world matrix. ``handles``
+    ``version`` counts the updates that changed a world matrix,
+    ``hidden_version`` what may have shown or hidden a row. ``handles``
     are the live single-row views, one per row. A ``fixed`` tree is a
     scene's: its rows do not move to other trees.
     """
 
     def __init__(self, *, fixed: bool = False) -> None:
         self.version = 0
+        self.hidden_version = 0
         self.fixed = fixed
         self.handles: WeakValueDictionary[int, RowHandle] = (
             WeakValueDictionary()
@@ -53,6 +55,9 @@ class TransformTree:
         self._dirty: NDArray[np.bool_] = np.empty(0, np.bool_)
         self._changed: NDArray[np.int64] = np.empty(0, np.int64)
         self._edits: NDArray[np.int64] = np.empty(0, np.int64)
+        # Only own marks; few scenes have any.
+        self._hidden: NDArray[np.bool_] = np.empty(0, np.bool_)
+        self._all_hidden: NDArray[np.bool_] | None = None
 
     def __len__(self) -> int:
         """How many rows are alive."""
@@ -111,6 +116,31 @@ class TransformTree:
         self._dirty[rows] = True
         self._stale = True
 
+    def is_visible(self, row: int) -> bool:
+        """Whether ``row`` itself is not marked as hidden."""
+        return not self._hidden[row]
+
+    def set_visible(self, rows: int | Rows, visible: ArrayLike) -> None:
+        """Mark ``rows`` (...) as visible (...) or, with all below, hidden."""
+        if (self._hidden[rows] == visible).any():
+            self._hidden[rows] = np.logical_not(visible)
+            self._all_hidden = None
+            self.hidden_version += 1
+
+    def hidden(self) -> NDArray[np.bool_]:
+        """Which rows (R,) are hidden or below one that is; read only.
+
+        Source: KHR_node_visibility.
+        """
+        if self._all_hidden is None:
+            hidden = self._hidden[: self._forest.size].copy()
+            rows = np.flatnonzero(hidden)
+            while rows.size:
+                rows = self._forest.children_of(rows)
+                hidden[rows] = True
+            self._all_hidden = hidden
+        return self._all_hidden
+
     def edits(self, row: int) -> int:
         """How often the local matrix of ``row`` was replaced."""
         return int(self._edits[row])
@@ -122,6 +152,7 @@ class TransformTree:
         its own ancestor.
         """
         self._forest.set_parent(row, parent)
+        self._forget_hidden()
         self._dirty[row] = True
         self._stale = True
 
@@ -163,7 +194,9 @@ class TransformTree:
             if handle is not None:
                 handle.row_moved(None, -1)
         self._dirty[rows] = False
+        self._hidden[rows] = False
         self._forest.free(rows)
+        self._forget_hidden()
 
     def absorb(self, other: "TransformTree") -> None:
         """Take over all rows of ``other``, whose handles then point here.
@@ -180,6 +213,7 @@ class TransformTree:
         parents = other.parents[old]
         inside = np.where(parents < 0, -1, position[parents])
         new = self._insert(other.local[old], inside, -1)
+        self._hidden[new] = other._hidden[old]
         for row, handle in other.handles.items():
             moved = int(new[position[row]])
             self.handles[moved] = handle
@@ -244,11 +278,18 @@ class TransformTree:
             self._dirty = _extended(self._dirty, more)
             self._changed = _extended(self._changed, more)
             self._edits = _extended(self._edits, more)
+            self._hidden = _extended(self._hidden, more)
         self._local[rows] = local
         self._edits[rows] += 1
         self._dirty[rows] = True
         self._stale = True
+        self._forget_hidden()
         return rows
+
+    def _forget_hidden(self) -> None:
+        """What is below what has changed; without marks that is nothing."""
+        self._all_hidden = None
+        self.hidden_version += int(self._hidden.any())
 
 
 def _extended(array: NDArray[_Number], more: int) -> NDArray[_Number]:
