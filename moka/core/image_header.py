@@ -5,11 +5,12 @@ headers of other formats are read by the module next to this.
 """
 
 from collections.abc import Callable
+from typing import TypeVar
 
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
 
-__all__ = ["media_type", "pixel_size"]
+__all__ = ["has_deep_texels", "media_type", "pixel_size"]
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _JPEG = b"\xff\xd8\xff"
@@ -17,6 +18,7 @@ _JPEG = b"\xff\xd8\xff"
 _FRAMES = {*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC}
 
 Read = Callable[[int, int], bytes]
+_Answer = TypeVar("_Answer")
 
 
 def media_type(data: bytes | memoryview) -> str | None:
@@ -39,9 +41,22 @@ def pixel_size(image: EncodedImage) -> tuple[int, int] | None:
 
     Only headers are read. Raises ImageFileError if the file is gone.
     """
+    return _ask(image, _size)
+
+
+def has_deep_texels(image: EncodedImage) -> bool:
+    """Whether its texels have 16 bits, which of all formats PNG's may have.
+
+    Raises ImageFileError if the file is gone.
+    """
+    return _ask(image, _is_deep)
+
+
+def _ask(image: EncodedImage, question: Callable[[Read], _Answer]) -> _Answer:
+    """What ``question`` makes of the bytes at a place, read as needed."""
     if image.path is None:
         data = image.read()
-        return _size(lambda start, count: bytes(data[start : start + count]))
+        return question(lambda start, count: bytes(data[start : start + count]))
     try:
         with open(image.path, "rb") as file:
 
@@ -49,11 +64,16 @@ def pixel_size(image: EncodedImage) -> tuple[int, int] | None:
                 file.seek(start)
                 return file.read(count)
 
-            return _size(read)
+            return question(read)
     except OSError as error:
         raise ImageFileError(
             f"{image.where}: cannot read {image.path}: {error.strerror}"
         ) from error
+
+
+def _is_deep(read: Read) -> bool:
+    head = read(0, 25)
+    return head.startswith(_PNG) and head[24:] == b"\x10"
 
 
 def _size(read: Read) -> tuple[int, int] | None:

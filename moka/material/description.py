@@ -14,7 +14,7 @@ from msgspec import Struct
 
 from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
-from moka.core.image_header import pixel_size
+from moka.core.image_header import has_deep_texels, pixel_size
 from moka.material.material import AlphaMode, Material, Texture
 
 __all__ = [
@@ -57,10 +57,16 @@ class TextureUse(Struct, frozen=True):
 
 
 class MaterialDescription(Struct, frozen=True):
-    """Everything about a material that changes the shader's text."""
+    """Everything about a material that changes the shader's text.
+
+    ``carriers`` are pairs of a value, which is ``roughness``, ``metalness``
+    or ``occlusion``, and the slot in whose alpha it is read: one texture
+    less to be sampled. Then ``textures`` lacks those that they come from.
+    """
 
     features: Feature
     textures: tuple[TextureUse, ...] = ()
+    carriers: tuple[tuple[str, str], ...] = ()
 
     @property
     def is_blended(self) -> bool:
@@ -87,12 +93,15 @@ def describe_material(
     material: Material,
     attributes: Collection[str],
     topology: Topology = Topology.TRIANGLES,
+    *,
+    carries: bool = True,
 ) -> MaterialDescription:
     """The description of ``material`` on vertices with ``attributes``.
 
     Only what changes the picture is kept: a normal map means nothing to an
     unlit surface or without texture coordinates, an emissive texture
     nothing under a black factor, a tangent nothing without a normal map.
+    Unless it ``carries``, no texture takes up the values of another.
     Raises ModelError for a texture coordinate set above 1.
     """
     slots = texture_slots(material)
@@ -110,6 +119,11 @@ def describe_material(
         for slot, texture in slots.items()
         if _uv_attribute(material, slot, texture) in attributes
     }
+    carriers = _carriers(material, slots) if carries else {}
+    if carriers:
+        del slots["metallic_roughness"]
+    if "occlusion" in carriers:
+        del slots["occlusion"]
     if _shares_sample(slots.get("occlusion"), slots.get("metallic_roughness")):
         del slots["occlusion"]
         features |= Feature.PACKED_OCCLUSION
@@ -134,7 +148,7 @@ def describe_material(
         TextureUse(slot, texture.uv_set, texture.transform is not None)
         for slot, texture in slots.items()
     )
-    return MaterialDescription(features, tuple(uses))
+    return MaterialDescription(features, tuple(uses), tuple(carriers.items()))
 
 
 def texture_slots(material: Material) -> dict[str, Texture]:
@@ -153,9 +167,9 @@ def texture_slots(material: Material) -> dict[str, Texture]:
     return {slot: texture for slot, texture in slots.items() if texture}
 
 
-def defines_of(description: MaterialDescription) -> dict[str, int]:
+def defines_of(description: MaterialDescription) -> dict[str, str | int]:
     """The ``#define``s that compile the surface shader for it."""
-    defines = {
+    defines: dict[str, str | int] = {
         f"MOKA_{flag.name}": 1
         for flag in Feature
         if flag in description.features
@@ -166,6 +180,9 @@ def defines_of(description: MaterialDescription) -> dict[str, int]:
         defines[f"{name}_UV"] = use.uv_set
         if use.has_transform:
             defines[f"{name}_TRANSFORM"] = 1
+    for value, slot in description.carriers:
+        defines[f"MOKA_{value.upper()}_CARRIER"] = f"{slot}_texture"
+        defines["MOKA_CARRIED_UV"] = defines[f"MOKA_{slot.upper()}_UV"]
     return defines
 
 
@@ -177,6 +194,47 @@ def _uv_attribute(material: Material, slot: str, texture: Texture) -> str:
             "draws sets 0 and 1"
         )
     return f"TEXCOORD_{texture.uv_set}"
+
+
+def _carriers(material: Material, slots: dict[str, Texture]) -> dict[str, str]:
+    """Slots with an alpha to spare for what roughness and others say.
+
+    All of it, or there would still be that texture to sample. Only opaque
+    materials do not read the alpha of their colour.
+    """
+    surface = slots.get("metallic_roughness")
+    if surface is None or not _is_carried(surface, surface):
+        return {}
+    values = ["roughness", "metalness"]
+    occlusion = slots.get("occlusion")
+    if occlusion is not None and _is_carried(occlusion, surface):
+        values.append("occlusion")
+    spare = ["normal", "base_colour", "emissive"]
+    if material.alpha_mode is not AlphaMode.OPAQUE:
+        spare.remove("base_colour")
+    carriers = [
+        slot
+        for slot in spare
+        if slot in slots and _is_carried(surface, slots[slot])
+    ]
+    if len(carriers) < len(values):
+        return {}
+    return dict(zip(values, carriers, strict=False))
+
+
+def _is_carried(first: Texture, second: Texture) -> bool:
+    """Whether an alpha of one could be a channel of the other.
+
+    Alphas have 8 bits where colours are encoded.
+    """
+    return (
+        first.sampler == second.sampler
+        and first.uv_set == second.uv_set
+        and first.transform is None is second.transform
+        and pixel_size(first.image) == pixel_size(second.image) is not None
+        and not has_deep_texels(first.image)
+        and not has_deep_texels(second.image)
+    )
 
 
 def _shares_sample(first: Texture | None, second: Texture | None) -> bool:

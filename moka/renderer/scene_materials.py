@@ -4,7 +4,7 @@ Apart from everything that draws, so that images begin to decode before the
 rest of the renderer is imported.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 
 from msgspec.structs import replace
@@ -20,6 +20,7 @@ from moka.material.material import Material, Texture
 from moka.model.mesh import Primitive
 from moka.renderer.sampled_levels import SampledLevels, StillPicture
 from moka.renderer.textures import (
+    Graft,
     TexturePool,
     TextureRequest,
     texture_request,
@@ -28,6 +29,14 @@ from moka.renderer.textures import (
 __all__ = ["SceneMaterials"]
 
 _DEFAULT_MATERIAL = Material(name="glTF default")
+
+
+# Which channel of which slot glTF 2.0, 3.9.2 and 3.9.3, has each value in.
+_CARRIED = {
+    "occlusion": ("occlusion", 0),
+    "roughness": ("metallic_roughness", 1),
+    "metalness": ("metallic_roughness", 2),
+}
 
 
 class SceneMaterials:
@@ -56,13 +65,20 @@ class SceneMaterials:
             tuple[Material, tuple[str, ...], object],
             tuple[MaterialDescription, dict[str, TextureRequest]],
         ] = {}
+        alone = _images_of_their_own(
+            primitives[index].material or _DEFAULT_MATERIAL
+            for index in self.drawn
+        )
         for index in self.drawn:
             primitive = primitives[index]
             material = primitive.material or _DEFAULT_MATERIAL
             key = (material, tuple(primitive.attributes), primitive.topology)
             if key not in known:
                 description = describe_material(
-                    material, primitive.attributes, primitive.topology
+                    material,
+                    primitive.attributes,
+                    primitive.topology,
+                    carries=alone.issuperset(_images(material)),
                 )
                 known[key] = (
                     description,
@@ -119,6 +135,26 @@ class SceneMaterials:
         )
 
 
+def _images(material: Material) -> frozenset[int]:
+    """The images of a material, by their Python id."""
+    return frozenset(id(texture.image) for texture in material.textures)
+
+
+def _images_of_their_own(materials: Iterable[Material]) -> set[int]:
+    """Images that no two materials use together with different others.
+
+    To carry the values of others one of these would be uploaded twice.
+    """
+    together: dict[int, frozenset[int]] = {}
+    shared = set()
+    for material in {id(each): each for each in materials}.values():
+        images = _images(material)
+        for image in images:
+            if together.setdefault(image, images) != images:
+                shared.add(image)
+    return together.keys() - shared
+
+
 def _requests(
     material: Material,
     description: MaterialDescription,
@@ -127,21 +163,27 @@ def _requests(
 ) -> dict[str, TextureRequest]:
     """The textures of a material by slot; their images join ``images``."""
     slots = texture_slots(material)
-    packed = Feature.PACKED_OCCLUSION in description.features
+    # By slot, the channel that comes from another image, and where it goes.
+    grafts: dict[str, tuple[EncodedImage, int, int]] = {
+        slot: (slots[_CARRIED[value][0]].image, _CARRIED[value][1], 3)
+        for value, slot in description.carriers
+    }
+    if Feature.PACKED_OCCLUSION in description.features:
+        packed = slots["occlusion"].image
+        if packed.identity != slots["metallic_roughness"].image.identity:
+            grafts["metallic_roughness"] = (packed, 0, 0)
     requests = {}
     for use in description.textures:
         texture = slots[use.slot]
-        occlusion = (
-            slots["occlusion"].image
-            if packed and use.slot == "metallic_roughness"
-            else texture.image
-        )
-        request = texture_request(
-            use.slot, texture, occlusion, picture.number if picture else 0
-        )
         given = [texture.image]
-        if request.occlusion is not None:
-            given.append(occlusion)
+        graft = None
+        if use.slot in grafts:
+            image, of, into = grafts[use.slot]
+            given.append(image)
+            graft = Graft(image.identity, of, into)
+        request = texture_request(
+            use.slot, texture, graft, picture.number if picture else 0
+        )
         images.setdefault(request, given)
         requests[use.slot] = request
     return requests

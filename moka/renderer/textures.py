@@ -27,7 +27,7 @@ from moka.graphics.device import GraphicsDevice
 from moka.material.material import Texture
 from moka.renderer.sampled_levels import SampledLevels
 
-__all__ = ["TexturePool", "TextureRequest", "texture_request"]
+__all__ = ["Graft", "TexturePool", "TextureRequest", "texture_request"]
 
 _DATA_FORMATS = {
     ("u1", 1): PixelFormat.R8,
@@ -51,35 +51,39 @@ _PADDED = {
 COLOUR_SLOTS = frozenset({"base_colour", "emissive"})
 
 
+class Graft(Struct, frozen=True):
+    """That channel ``into`` of a texture is channel ``of`` another image.
+
+    ``identity`` is the image's, which has the same size.
+    """
+
+    identity: str
+    of: int
+    into: int
+
+
 class TextureRequest(Struct, frozen=True):
     """An image and how the GPU is to hold it.
 
-    ``occlusion`` is the identity of another image whose red channel takes
-    the place of this one's. ``picture`` is the number of the still picture
-    that it is for, 0 for any.
+    ``picture`` is the number of the still picture that it is for, 0 for any.
     """
 
     identity: str
     is_colour: bool
     has_levels: bool
-    occlusion: str | None = None
+    graft: Graft | None = None
     picture: int = 0
 
 
 def texture_request(
-    slot: str, texture: Texture, occlusion: EncodedImage, picture: int = 0
+    slot: str, texture: Texture, graft: Graft | None = None, picture: int = 0
 ) -> TextureRequest:
-    """The request for a texture of a material.
-
-    ``occlusion`` is the image, of the same size, to read occlusion from;
-    the texture's own, unless another is put in.
-    """
-    identity = texture.image.identity
+    """The request for a texture of a material."""
     return TextureRequest(
-        identity,
+        texture.image.identity,
         slot in COLOUR_SLOTS,
         texture.sampler.mipmap is not MipmapMode.NONE,
-        None if occlusion.identity == identity else occlusion.identity,
+        graft,
         picture,
     )
 
@@ -111,20 +115,22 @@ class TexturePool:
         """
         if request in self._pending:
             return
-        decoders = [
-            self._decoders.setdefault(image.identity, _Decoder(image))
-            for image in images
-        ]
+        decoders = []
+        for image in images:
+            if image.identity not in self._decoders:
+                self._decoders[image.identity] = _Decoder(image)
+                self._statistics.count("textures_loaded")
+            decoders.append(self._decoders[image.identity])
         self._pending[request] = self._workers.submit(
             self._make, request, decoders, levels
         )
-        self._statistics.count("textures_loaded", len(decoders))
 
     def handle(self, request: TextureRequest) -> Handle:
         """The texture of a request; raises ImageFileError for a bad image."""
         handle = self._pending[request].result()
-        for identity in (request.identity, request.occlusion):
-            self._decoders.pop(identity or "", None)
+        self._decoders.pop(request.identity, None)
+        if request.graft is not None:
+            self._decoders.pop(request.graft.identity, None)
         return handle
 
     def close(self) -> None:
@@ -140,10 +146,15 @@ class TexturePool:
         from moka.core.mip_levels import reduce_levels
 
         with self._statistics.stage("decode"):
-            texels, *occlusion = (decoder.texels() for decoder in decoders)
-            texels, pixels = _arrange(texels, is_colour=request.is_colour)
-            if occlusion:
-                texels, pixels = _with_red_of(texels, occlusion[0])
+            texels, *others = (decoder.texels() for decoder in decoders)
+            texels = _arrange(texels, is_colour=request.is_colour)
+            if request.graft is not None:
+                texels = _grafted(texels, others[0], request.graft)
+            pixels = (
+                _COLOUR_FORMATS[texels.shape[2]]
+                if request.is_colour
+                else _DATA_FORMATS[texels.dtype.str[1:], texels.shape[2]]
+            )
             levels = (
                 reduce_levels(texels, srgb=request.is_colour)
                 if request.has_levels
@@ -197,29 +208,28 @@ def _padded(texels: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return padded
 
 
-def _with_red_of(
-    texels: NDArray[Any], occlusion: NDArray[Any]
-) -> tuple[NDArray[Any], PixelFormat]:
-    """Texels whose red channel is that of another image of their size."""
-    kind = max(texels.dtype, occlusion.dtype)
-    red, *others = (
-        channel
-        if channel.dtype == kind
+def _grafted(
+    texels: NDArray[Any], other: NDArray[Any], graft: Graft
+) -> NDArray[Any]:
+    """Texels of which one channel is that of another image of their size."""
+    kind = max(texels.dtype, other.dtype)
+    channels = [texels[:, :, index] for index in range(texels.shape[2])]
+    # In grey images red, green and blue are one.
+    of = graft.of if other.shape[2] > 2 else 0
+    channels[graft.into : graft.into + 1] = [other[:, :, of]]
+    joined = np.empty((*texels.shape[:2], len(channels)), kind)
+    for index, channel in enumerate(channels):
         # 255 becomes 65 535.
-        else channel.astype(kind) * kind.type(257)
-        for channel in (
-            occlusion[:, :, 0],
-            *(texels[:, :, index] for index in range(1, texels.shape[2])),
+        joined[:, :, index] = (
+            channel
+            if channel.dtype == kind
+            else channel.astype(kind) * kind.type(257)
         )
-    )
-    packed = np.stack([red, *others], axis=2)
-    return packed, _DATA_FORMATS[kind.str[1:], packed.shape[2]]
+    return joined
 
 
-def _arrange(
-    texels: NDArray[Any], *, is_colour: bool
-) -> tuple[NDArray[Any], PixelFormat]:
-    """Texels and the format that holds them with the least loss.
+def _arrange(texels: NDArray[Any], *, is_colour: bool) -> NDArray[Any]:
+    """Texels that a format on the GPU holds with the least loss.
 
     Grey images become RGB where a shader reads colours: GL's sRGB formats
     have three or four channels, and data are read as r, g, b.
@@ -232,10 +242,7 @@ def _arrange(
             if channels == 2
             else grey
         )
-    channels = texels.shape[2]
-    if is_colour:
-        if texels.dtype == np.uint16:
-            # There is no 16-bit sRGB format.
-            texels = ((texels.astype(np.uint32) + 128) // 257).astype(np.uint8)
-        return texels, _COLOUR_FORMATS[channels]
-    return texels, _DATA_FORMATS[texels.dtype.str[1:], channels]
+    if is_colour and texels.dtype == np.uint16:
+        # There is no 16-bit sRGB format.
+        texels = ((texels.astype(np.uint32) + 128) // 257).astype(np.uint8)
+    return texels

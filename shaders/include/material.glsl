@@ -79,6 +79,16 @@ vec3 occlusion_roughness_metalness(MaterialsRow row) {
     float occlusion = texture(occlusion_texture, occlusion_uv).r;
     packed_values.x = 1.0 + row.occlusion_strength * (occlusion - 1.0);
 #endif
+#ifdef MOKA_ROUGHNESS_CARRIER
+    // In alphas of other textures: the same samples as theirs, once compiled.
+    vec2 carried_uv = UV_OF_SET(MOKA_CARRIED_UV);
+    packed_values.y *= texture(MOKA_ROUGHNESS_CARRIER, carried_uv).a;
+    packed_values.z *= texture(MOKA_METALNESS_CARRIER, carried_uv).a;
+#ifdef MOKA_OCCLUSION_CARRIER
+    packed_values.x = 1.0 + row.occlusion_strength
+        * (texture(MOKA_OCCLUSION_CARRIER, carried_uv).a - 1.0);
+#endif
+#endif
     return clamp(packed_values, 0.0, 1.0);
 }
 

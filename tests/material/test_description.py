@@ -1,5 +1,8 @@
 """Descriptions hold what changes a shader, and nothing else."""
 
+from typing import Any
+
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,6 +10,7 @@ from hypothesis import strategies as st
 from moka.commands.descriptors import SamplerDescriptor, Topology, Wrap
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ModelError
+from moka.core.png import encode_png
 from moka.material.description import (
     Feature,
     MaterialDescription,
@@ -22,6 +26,7 @@ from moka.material.material import (
 
 IMAGE = EncodedImage("model.gltf: images[0]", data=b"one")
 OTHER = EncodedImage("model.gltf: images[1]", data=b"two")
+FLAT = EncodedImage("flat", data=encode_png(np.zeros((4, 4, 3), np.uint8)))
 ALL = ("POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0")
 
 
@@ -98,6 +103,36 @@ def test_occlusion_in_the_roughness_texture_costs_no_sample() -> None:
             occlusion_texture=different,
         )
         assert len(apart.textures) == 2
+
+
+def test_values_are_carried_where_all_of_them_fit() -> None:
+    """Alphas of opaque colours, normals and emission, of one size."""
+
+    def carriers(side: int = 4, deep: bool = False, **fields: Any) -> Any:
+        data = encode_png(np.zeros((side, side, 3), np.uint8))
+        if deep:
+            data = data[:24] + b"\x10" + data[25:]
+        surface = EncodedImage("surface", data=data)
+        return dict(
+            describe(
+                base_colour_texture=Texture(FLAT),
+                normal_texture=Texture(FLAT),
+                metallic_roughness_texture=Texture(surface),
+                **fields,
+            ).carriers
+        )
+
+    both = {"roughness": "normal", "metalness": "base_colour"}
+    assert carriers() == both
+    # Sizes that differ, values of 16 bits, an alpha that is read, and one
+    # value too many.
+    assert carriers(side=8) == {}
+    assert carriers(deep=True) == {}
+    assert carriers(alpha_mode=AlphaMode.MASK) == {}
+    occlusion = {"occlusion_texture": Texture(FLAT)}
+    assert carriers(**occlusion) == {}
+    glow = {"emissive_texture": Texture(FLAT), "emissive_factor": (1, 1, 1)}
+    assert carriers(**occlusion, **glow) == both | {"occlusion": "emissive"}
 
 
 def test_a_pure_metal_needs_no_diffuse_light() -> None:
