@@ -41,12 +41,14 @@ class Sun:
 
     ``direction`` is a unit vector towards it, ``irradiance`` linear Rec.709,
     on a surface that faces it, in the unit of the map's radiance times
-    steradians. ``angular_radius`` is in radians.
+    steradians. ``angular_radius`` is in radians. ``in_map`` tells that the
+    environment's map shows it as well, as it does those found there.
     """
 
     direction: tuple[float, float, float]
     irradiance: tuple[float, float, float]
     angular_radius: float = 0.00465
+    in_map: bool = False
 
     def __post_init__(self) -> None:
         if not math.isclose(math.hypot(*self.direction), 1.0, abs_tol=1e-6):

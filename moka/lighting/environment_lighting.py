@@ -18,6 +18,8 @@ class LightingRequest:
     ``most_suns`` may become lights; ``irradiance_as`` is ``auto``, ``sh`` or
     ``cube``. ``specular`` and ``irradiance`` are what surfaces reflect, with
     ``radiance`` for filtered lighting; ``background`` is the map itself.
+    With ``sampled`` the map and a table to sample it by are all: nothing is
+    looked for in it, and the environment's own suns alone are lights.
     """
 
     environment: Environment
@@ -27,6 +29,7 @@ class LightingRequest:
     specular: bool = False
     irradiance: bool = False
     radiance: bool = False
+    sampled: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

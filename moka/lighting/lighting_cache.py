@@ -130,8 +130,10 @@ class LightingCache:
             if name == "specular":
                 maps.specular_levels = len(levels)
         suns = tuple(
-            Sun((x, y, z), (red, green, blue), radius)
-            for x, y, z, red, green, blue, radius in arrays["suns"].tolist()
+            Sun((x, y, z), (red, green, blue), radius, bool(in_map))
+            for x, y, z, red, green, blue, radius, in_map in (
+                arrays["suns"].tolist()
+            )
         )
         return EnvironmentLighting(
             maps, suns, arrays.get("harmonics"), is_cached=True
@@ -142,10 +144,15 @@ class LightingCache:
         arrays: dict[str, NDArray[Any]] = {
             "suns": np.array(
                 [
-                    (*sun.direction, *sun.irradiance, sun.angular_radius)
+                    (
+                        *sun.direction,
+                        *sun.irradiance,
+                        sun.angular_radius,
+                        sun.in_map,
+                    )
                     for sun in lighting.suns
                 ]
-            ).reshape(-1, 7)
+            ).reshape(-1, 8)
         }
         if lighting.harmonics is not None:
             arrays["harmonics"] = lighting.harmonics

@@ -85,7 +85,12 @@ class LightingMaker:
         self._cache.flush()
 
     def _make(self, request: LightingRequest) -> EnvironmentLighting:
-        split = split_environment(request.environment, request.most_suns)
+        split = split_environment(
+            request.environment, request.most_suns, search=not request.sampled
+        )
+        if request.sampled:
+            maps = self._preintegrator.sampled(split.full)
+            return EnvironmentLighting(maps, split.suns)
         harmonics = (
             _harmonics(split, request.irradiance_as)
             if request.irradiance

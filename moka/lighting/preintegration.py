@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.commands.descriptors import PixelFormat, TextureDescriptor
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.lighting.environment_maps import EnvironmentMaps
+from moka.lighting.importance import importance_table
 from moka.lighting.irradiance_cube import irradiance_cube
 from moka.lighting.preintegration_passes import PreintegrationPasses
 from moka.lighting.radiance_cube import (
@@ -46,6 +48,21 @@ class Preintegrator:
         """Upload ``pixels`` as the ``map`` of ``maps``."""
         maps.map = upload_map(self._device, pixels)
         maps.resources.append(maps.map)
+
+    def sampled(self, pixels: NDArray[np.float32]) -> EnvironmentMaps:
+        """A map and the table by which reference lighting samples it."""
+        maps = EnvironmentMaps()
+        self.add_map(maps, pixels)
+        table = importance_table(pixels)
+        height, width, _ = table.shape
+        maps.importance = self._device.create_texture(
+            TextureDescriptor(
+                PixelFormat.RGB32F, width, height, label="importance table"
+            ),
+            [table],
+        )
+        maps.resources.append(maps.importance)
+        return maps
 
     def prepare(
         self,

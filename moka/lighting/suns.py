@@ -46,7 +46,7 @@ _LARGEST = 0.004
 # environments without one fail, for the price of a maximum.
 _LEAST_PEAK = _LEAST_SHARE * 4.0 * np.pi / _LARGEST
 
-# Of a map with suns and nothing else: they are a degree wide in it.
+# Of a map of suns in uniform light: they are a degree wide in it.
 _ROWS_OF_UNIFORM = 128
 
 
@@ -54,9 +54,10 @@ _ROWS_OF_UNIFORM = 128
 class SplitEnvironment:
     """An environment twice: as a whole, and as a base and suns.
 
-    ``full`` is the map with its suns, ``base`` without; both are float32
-    (H, W, 3), or (1, 1, 3) for a uniform environment, and the same array
-    where there are no suns.
+    ``full`` is the map, ``base`` what is left when suns that were found in it
+    are taken out; both are float32 (H, W, 3), or (1, 1, 3) for a uniform
+    environment, and the same array where none was found. The environment's
+    own suns are in neither.
     """
 
     full: Pixels
@@ -65,41 +66,28 @@ class SplitEnvironment:
 
 
 def split_environment(
-    environment: Environment, most: int = AUTO_SUNS
+    environment: Environment, most: int = AUTO_SUNS, *, search: bool = True
 ) -> SplitEnvironment:
     """Split ``environment`` into a base and at most ``most`` suns.
 
     Its own suns come first. Those that are too many are drawn into the map.
-    One texel for all directions becomes a map if there are suns to be shown.
+    Without ``search`` no others are looked for.
     """
     own = _own_suns(environment)
-    whole = _with_suns(_map_of(environment), own[most:])
-    if environment.is_uniform and not own:
-        return SplitEnvironment(whole, whole, ())
-    base, found = extract_suns(whole, max(most - len(own), 0))
-    full = _with_suns(whole, own[:most])
+    full = full_map(environment, most)
+    left = max(most - len(own), 0) if search else 0
+    base, found = extract_suns(full, left)
     return SplitEnvironment(full, base, (*own[:most], *found))
 
 
 def full_map(environment: Environment, most: int = AUTO_SUNS) -> Pixels:
-    """The ``full`` of :func:`split_environment`, to the last bit."""
-    own = _own_suns(environment)
-    # In two steps, as there: sums of floats depend on their order.
-    whole = _with_suns(_map_of(environment), own[most:])
-    return _with_suns(whole, own[:most])
+    """The ``full`` of :func:`split_environment`."""
+    return _with_suns(environment.pixels, _own_suns(environment)[most:])
 
 
 def _own_suns(environment: Environment) -> list[Sun]:
     """The brightest first."""
     return sorted(environment.suns, key=lambda sun: -sum(sun.irradiance))
-
-
-def _map_of(environment: Environment) -> Pixels:
-    """The pixels; a map also of a uniform environment that has suns."""
-    pixels = environment.pixels
-    if environment.is_uniform and environment.suns:
-        return np.tile(pixels, (_ROWS_OF_UNIFORM, 2 * _ROWS_OF_UNIFORM, 1))
-    return pixels
 
 
 def extract_suns(
@@ -116,11 +104,13 @@ def extract_suns(
     ``pixels`` itself.
     """
     height, width, _ = pixels.shape
+    if height == 1 or most < 1:
+        return pixels, ()
     # Not luminance, which would overlook a blue lamp.
     brightness = pixels @ np.full(3, 1.0 / 3.0, np.float32)
     rows = solid_angles(height, width)[:, 0]
     mean = float(rows.astype(np.float32) @ brightness.sum(axis=1)) / (4 * np.pi)
-    if most < 1 or brightness.max() <= _LEAST_PEAK * mean:
+    if brightness.max() <= _LEAST_PEAK * mean:
         return pixels, ()
     texels = np.flatnonzero(brightness > _LIMIT * mean)
     values = brightness.ravel()[texels].astype(np.float64)
@@ -168,7 +158,8 @@ def _sun(
     spread = 4.0 * max(1.0 - length, 0.0) + weights @ areas * 2.0 / 3.0
     x, y, z = (mean / length).tolist()
     red, green, blue = irradiance.tolist()
-    return Sun((x, y, z), (red, green, blue), float(np.sqrt(spread)))
+    radius = float(np.sqrt(spread))
+    return Sun((x, y, z), (red, green, blue), radius, in_map=True)
 
 
 def _components(
@@ -205,9 +196,14 @@ def _components(
 
 
 def _with_suns(pixels: Pixels, suns: list[Sun]) -> Pixels:
-    """``pixels`` with the discs of ``suns`` drawn in, their flux exact."""
+    """``pixels`` with the discs of ``suns`` drawn in, their flux exact.
+
+    One texel for all directions becomes a map.
+    """
     if not suns:
         return pixels
+    if pixels.shape[:2] == (1, 1):
+        pixels = np.tile(pixels, (_ROWS_OF_UNIFORM, 2 * _ROWS_OF_UNIFORM, 1))
     height, width, _ = pixels.shape
     drawn = pixels.copy()
     rows = solid_angles(height, width)[:, 0]

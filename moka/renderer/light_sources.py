@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from moka.commands.descriptors import (
     BufferDescriptor,
     BufferUsage,
-    PixelFormat,
-    TextureDescriptor,
 )
 from moka.commands.handles import Handle
 from moka.core.errors import OptionError
@@ -23,10 +21,10 @@ from moka.lighting.environment_lighting import (
     LightingRequest,
 )
 from moka.lighting.environment_maps import EnvironmentMaps
-from moka.lighting.importance import importance_table
 from moka.lighting.lighting_maker import LightingMaker
-from moka.lighting.suns import AUTO_SUNS, full_map
+from moka.lighting.suns import AUTO_SUNS
 from moka.renderer.permutation import lights_layout
+from moka.renderer.settings import MOST_SUNS
 from moka.renderer.view import turn_matrix
 from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
@@ -87,12 +85,12 @@ class LightSources:
 
         ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
         ``irradiance_as`` and ``ibl`` are RenderSettings' ``suns``,
-        ``irradiance`` and ``ibl``. Reference lighting samples the map with
-        its suns and nothing else.
+        ``irradiance`` and ``ibl``. Reference lighting samples the map as it
+        is, and the environment's own suns as discs.
         """
         sampled = ibl == "reference" and (specular or irradiance)
         if sampled:
-            background, suns = True, "off"
+            background, suns = True, MOST_SUNS
             specular = irradiance = False
         options = (suns, irradiance_as, ibl)
         wanted = (
@@ -120,13 +118,11 @@ class LightSources:
                         specular=specular,
                         irradiance=irradiance,
                         radiance=ibl == "filtered" and specular,
+                        sampled=sampled,
                     )
                 )
         self.maps, self._suns = lighting.maps, lighting.suns
         self.harmonics = lighting.harmonics
-        if environment is not None and sampled:
-            with self._statistics.stage("environment"):
-                self._add_importance(environment)
         self._environment, self._made = environment, wanted
         self._options = options
         self._report(is_cached=lighting.is_cached)
@@ -149,18 +145,13 @@ class LightSources:
             estimated_error=None,
         )
 
-    def _add_importance(self, environment: Environment) -> None:
-        """Add the table by which the whole map is sampled."""
-        table = importance_table(full_map(environment, 0))
-        height, width, _ = table.shape
-        texture = self._device.create_texture(
-            TextureDescriptor(
-                PixelFormat.RGB32F, width, height, label="importance table"
-            ),
-            [table],
-        )
-        self.maps.importance = texture
-        self.maps.resources.append(texture)
+    @property
+    def map_shows_suns(self) -> bool:
+        """Whether ``maps.map`` has suns of the environment drawn into it."""
+        if self._environment is None:
+            return False
+        own = sum(not sun.in_map for sun in self._suns)
+        return own < len(self._environment.suns)
 
     def rows(
         self, scene: Scene, origin: NDArray[np.float64]
@@ -221,6 +212,7 @@ def _sun_rows(scene: Scene, suns: tuple[Sun, ...]) -> NDArray[np.void]:
         irradiance = np.array(sun.irradiance) * scene.environment_intensity
         row["intensity"] = np.minimum(irradiance, BRIGHTEST)
         row["angle_offset"] = 1.0
-        # Above 0, by which the shader knows a sun: it is in the map as well.
+        # Above 0, by which the shader knows a sun.
         row["angular_radius"] = max(sun.angular_radius, 1e-6)
+        row["in_map"] = sun.in_map
     return rows

@@ -66,6 +66,7 @@ def lights_layout(capacity: int) -> UniformLayout:
             Parameter("angle_scale", ParameterType.FLOAT),
             Parameter("angle_offset", ParameterType.FLOAT),
             Parameter("angular_radius", ParameterType.FLOAT),
+            Parameter("in_map", ParameterType.FLOAT),
         ),
         capacity,
     )

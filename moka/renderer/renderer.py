@@ -475,8 +475,10 @@ class Renderer:
         environment_map = self._sources.maps.map
         if scene.background != "environment" or environment_map is None:
             return None
+        if self._sources.map_shows_suns:
+            environment_map = self._sky_map.without_suns(scene.environment)
         return Sky(
-            self._sky_map.without_suns(scene.environment, environment_map),
+            environment_map,
             view,
             rotation=scene.environment_rotation,
             intensity=scene.environment_intensity,

@@ -9,26 +9,18 @@ __all__ = ["SkyMap"]
 
 
 class SkyMap:
-    """Keeps the texture of an environment whose suns are drawn as discs.
+    """Keeps the map of an environment without its suns.
 
-    In the map that mirrors show they are a texel or two, which would look
-    like squares.
+    Where these are no lights they are a texel or two of the map that lights,
+    which would look like squares; behind the scene they are discs.
     """
 
     def __init__(self, device: GraphicsDevice) -> None:
         self._device = device
         self._texture: Handle | None = None
 
-    def without_suns(
-        self, environment: Environment, environment_map: Handle
-    ) -> Handle:
-        """The map without the environment's own suns.
-
-        ``environment_map`` has them; it is the answer if there are none.
-        The texture stays until :meth:`forget`.
-        """
-        if not environment.suns:
-            return environment_map
+    def without_suns(self, environment: Environment) -> Handle:
+        """The texture of its pixels, which stays until :meth:`forget`."""
         if self._texture is None:
             height, width, _ = environment.pixels.shape
             self._texture = self._device.create_texture(

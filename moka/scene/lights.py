@@ -25,7 +25,8 @@ __all__ = ["LIGHT", "Light", "pack_lights"]
 # One light as the shader reads it: four vec4 of a std140 block. The position
 # is relative to the origin that it was packed for; "positional" is 1, or 0
 # for a directional light; the intensity is colour times candela or lux. The
-# angular radius, in radians, is a sun's; other lights have none.
+# angular radius, in radians, is a sun's; other lights have none. It is 1 for
+# "in_map" if the environment's map shows the sun as well.
 LIGHT = np.dtype(
     [
         ("position", np.float32, 3),
@@ -36,7 +37,8 @@ LIGHT = np.dtype(
         ("angle_scale", np.float32),
         ("angle_offset", np.float32),
         ("angular_radius", np.float32),
-        ("spare", np.float32, 2),
+        ("in_map", np.float32),
+        ("spare", np.float32),
     ]
 )
 

@@ -7,6 +7,7 @@
 #include "include/direction.glsl"
 #include "include/environment.glsl"
 #include "include/multiscatter.glsl"
+#include "include/sun_disc.glsl"
 
 const vec3 DIELECTRIC_F0 = vec3(0.04);
 
@@ -49,12 +50,19 @@ Surface make_surface(
     return surface;
 }
 
-// The part of light that reaches the diffuse base. It is the dielectric's
-// alone: glTF 2.0, B.2.4, mixes a dielectric and a metal by metalness.
-float base_share(Surface surface) {
+// The part of an environment's light that reaches the diffuse base. It is the
+// dielectric's alone: glTF 2.0, B.2.4, mixes a dielectric and a metal by
+// metalness. Without compensation it is the mean of appendix B's 1 - F(v.h),
+// which lights have.
+float base_share(Surface surface, float n_dot_v) {
+#ifdef MOKA_MULTISCATTER
     return diffuse_share(
         specular_albedo(DIELECTRIC_F0, surface.f90, surface.table)
         * multiscatter_scale(DIELECTRIC_F0, surface.table));
+#else
+    return diffuse_share(mix(
+        DIELECTRIC_F0, surface.f90, mean_fresnel_power(n_dot_v)));
+#endif
 }
 
 // The level of the prefiltered cube for a roughness: quadratic, so that the
@@ -66,11 +74,12 @@ float specular_level(float roughness) {
     return level < 1.0 ? smoothstep(0.0, 1.0, level * level) : level;
 }
 
-// How much of a sun is a light. Level 0 of the specular cube is the mirror
-// image of the whole environment; the levels from 1 lack the suns. What a
-// texture lookup between the two takes of the first is the sun's part in the
-// map, and the rest is this: energy is exact at every roughness, and no step
-// is to be seen. On the way the sun's image fades and its highlight grows.
+// How much of a sun that was found in the map is a light. Level 0 of the
+// specular cube is the mirror image of the whole map; the levels from 1 lack
+// its suns. What a texture lookup between the two takes of the first is the
+// sun's part in the map, and the rest is this: energy is exact at every
+// roughness, and no step is to be seen. On the way the sun's image fades and
+// its highlight grows.
 float sun_weight(float roughness) {
     return min(specular_level(roughness), 1.0);
 }
@@ -144,7 +153,7 @@ vec3 environment_light(Surface surface) {
     }
 #endif
 #ifdef MOKA_IRRADIANCE
-    vec3 diffuse = base_share(surface)
+    vec3 diffuse = base_share(surface, n_dot_v)
         * diffuse_albedo(n_dot_v, surface.diffuse_colour, surface.roughness);
     light += diffuse * environment_irradiance(
         turn_into_environment(surface.normal, environment_turn));
@@ -166,33 +175,26 @@ float distance_attenuation(float squared_distance, float inverse_range) {
     return window / max(squared_distance, 1e-8);
 }
 
-// The lobe in which a sun, a disc of angular radius R, is seen: its peak is
-// lower by 1 + R^2 / (4 alpha^2) for R << alpha, and is the radiance of the
-// disc itself for alpha << R. A lobe of this width has both, and all of the
-// energy. As long as the sun is also in the map it is as wide as there, a
-// texel more, lest the highlight be brighter than the image that it follows;
-// level 0 has 8 * 2^specular_levels texels to the side of a cube, which is 2.
-float sun_alpha(float roughness, float angular_radius) {
-    float alpha = alpha_from_roughness(roughness);
-    float texel = 0.25 * exp2(-specular_levels);
-    float disc = angular_radius * angular_radius
-        + (1.0 - sun_weight(roughness)) * texel * texel;
-    return sqrt(alpha * alpha + 0.25 * disc);
-}
-
 // With energy compensation a light is reflected as the same light in an
 // environment map would be, and never more than all of it. Without, it is
 // glTF 2.0's appendix B to the letter, whose diffuse term (1 - F(v.h))
 // lets base and interface together return up to 1.9 at grazing angles.
 vec3 punctual_light(Surface surface) {
 #ifdef MOKA_MULTISCATTER
-    float base = base_share(surface);
+    float base = base_share(
+        surface, clamp_n_dot_v(dot(surface.normal, surface.view)));
 #endif
     vec3 scale = multiscatter_scale(surface.f0, surface.table);
     float k = schlick_k_direct(surface.roughness);
+    vec3 mirrored = reflect(-surface.view, surface.normal);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < light_count; ++i) {
         LightsRow light = lights[i];
+        bool is_sun = light.angular_radius > 0.0;
+#ifdef MOKA_IBL_REFERENCE
+        // Sampled with the environment that it is part of.
+        if (is_sun) continue;
+#endif
         vec3 towards = -light.direction;
         float attenuation = 1.0;
         if (light.positional != 0.0) {
@@ -216,15 +218,18 @@ vec3 punctual_light(Surface surface) {
 #else
         vec3 share = 1.0 - fresnel;
 #endif
-        bool is_sun = light.angular_radius > 0.0;
-        float alpha = is_sun
-            ? sun_alpha(surface.roughness, light.angular_radius)
-            : alpha_from_roughness(surface.roughness);
-        float lobe = specular_lobe(angles, alpha, k);
+        float lobe;
         if (is_sun) {
-            lobe *= sun_weight(surface.roughness);
+            vec3 offset = towards - mirrored;
+            lobe = specular_lobe_of_disc(
+                angles, dot(offset, offset), surface.roughness,
+                light.angular_radius);
+            if (light.in_map != 0.0) lobe *= sun_weight(surface.roughness);
             // Occluded like the rest of the environment that it is part of.
             attenuation *= surface.occlusion;
+        } else {
+            lobe = specular_lobe(
+                angles, alpha_from_roughness(surface.roughness), k);
         }
         vec3 reflected = fresnel * scale * lobe
             + share * diffuse_brdf(

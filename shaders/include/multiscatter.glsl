@@ -1,4 +1,5 @@
-// Where the light goes that one reflection does not account for.
+// Where the light goes that one reflection does not account for, and what an
+// interface lets through.
 //
 // A table entry is (scale, bias) of brdf_table.frag for the view direction:
 // the specular lobe reflects f0 scale + f90 bias of uniform light, and
@@ -30,4 +31,13 @@ vec3 multiscatter_scale(vec3 f0, vec2 table) {
 // coloured interface does not tint the base with its complement.
 float diffuse_share(vec3 specular) {
     return 1.0 - max(max(specular.r, specular.g), specular.b);
+}
+
+// The mean over uniform light, weighted n.l / pi, of Schlick's (1 - v.h)^5:
+// what the 1 - F(v.h) of glTF 2.0 appendix B takes from a Lambertian base.
+// Fitted to the integral, within 1.1e-5.
+float mean_fresnel_power(float n_dot_v) {
+    float x = 1.0 - n_dot_v;
+    return 8.3e-5 + x * (0.00200778455 + x * (0.00938194628
+        + x * (0.00767217648 + x * 0.00902114488)));
 }

@@ -151,6 +151,24 @@ def test_a_dome_of_lights_is_a_furnace(diffuse):
         assert np.abs(weights @ lit - furnace[0]).max() < 5e-3
 
 
+def test_without_compensation_a_dome_and_an_environment_agree_too():
+    """Appendix B's 1 - F(v.h) for each light, its mean for all of them."""
+    l, weights = hemisphere(96, 96)  # noqa: E741
+    for cosine in (0.02, 0.2, 0.5, 0.8, 1.0):
+        lit = gpu().evaluate(
+            f"(1.0 - fresnel_schlick(({ANGLES}).v_dot_h, 0.04, 1.0)) / PI",
+            FILES,
+            v=np.tile(spherical(cosine, 1.0), (len(l), 1)),
+            l=l,
+        )
+        furnace = gpu().evaluate(
+            "diffuse_share(mix(vec3(0.04), vec3(1.0), mean_fresnel_power(c)))",
+            FILES,
+            c=np.array([cosine]),
+        )
+        assert weights @ lit == pytest.approx(furnace[0], abs=1e-4)
+
+
 @pytest.mark.parametrize("brdf", BRDFS)
 @pytest.mark.parametrize("diffuse", [*DIFFUSES, "BURLEY_ORIGINAL"])
 def test_reciprocity_of_every_combination(brdf, diffuse):

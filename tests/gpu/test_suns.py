@@ -223,7 +223,7 @@ def test_metals_under_real_maps(
 
 
 def test_a_sun_without_a_size_is_a_point(egl_device: GraphicsDevice) -> None:
-    """Not counted twice: a mirror shows it in the map and nowhere else."""
+    """A mirror shows it as a small disc, and nothing of it beside."""
     pixels = np.full((HEIGHT, 2 * HEIGHT, 3), 0.5, np.float32)
     x, y, z = TOWARDS_SUN
     environment = Environment(pixels, (Sun((x, y, z), (3.0, 3.0, 3.0), 0.0),))

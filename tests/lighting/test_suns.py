@@ -174,33 +174,41 @@ def test_suns_that_are_off_are_in_the_map():
     assert added == pytest.approx(sun.irradiance, rel=1e-5)
 
 
-def test_an_environment_keeps_its_own_suns_and_shows_them_in_the_map():
+def test_the_suns_of_an_environment_are_lights_and_not_in_its_map():
     sun = Sun((0.6, 0.8, 0.0), (3.0, 2.0, 1.0), 0.005)
     environment = Environment(sky(), (sun,))
     split = split_environment(environment)
     assert split.suns == (sun,)
-    assert split.base is environment.pixels
-    brightest = np.unravel_index(split.full.sum(axis=2).argmax(), (64, 128))
-    towards = equirectangular_directions(WIDTH, HEIGHT)[brightest]
-    assert towards @ sun.direction > np.cos(0.04)
+    assert not sun.in_map
+    assert split.base is split.full is environment.pixels
 
 
 def test_own_suns_are_first_and_found_ones_fill_up():
     pixels = disc(sky(128), (-1, 1, 0), 0.03, 6e4)
     own = Sun((0.6, 0.8, 0.0), (0.03, 0.02, 0.01), 0.005)
     environment = Environment(pixels, (own,))
-    assert len(split_environment(environment).suns) == 2
+    first, found = split_environment(environment).suns
+    assert first == own
+    assert found.in_map
+    assert split_environment(environment, search=False).suns == (own,)
     assert split_environment(environment, 1).suns == (own,)
 
 
-def test_a_uniform_environment_becomes_a_map_to_show_its_suns():
+def test_a_uniform_environment_becomes_a_map_to_show_suns_that_are_off():
+    sun = Sun((0.0, 1.0, 0.0), (3.0, 2.0, 1.0))
+    environment = Environment(np.ones((1, 1, 3), np.float32), (sun,))
+    split = split_environment(environment, 0)
+    assert split.suns == ()
+    added = flux(split.full) - flux(np.ones_like(split.full))
+    assert added == pytest.approx(sun.irradiance, rel=1e-5)
+
+
+def test_a_uniform_environment_with_a_light_stays_one_texel():
     sun = Sun((0.0, 1.0, 0.0), (3.0, 2.0, 1.0))
     environment = Environment(np.ones((1, 1, 3), np.float32), (sun,))
     split = split_environment(environment)
     assert split.suns == (sun,)
-    assert (split.base == 1.0).all()
-    added = flux(split.full) - flux(split.base)
-    assert added == pytest.approx(sun.irradiance, rel=1e-5)
+    assert split.full.shape == (1, 1, 3)
 
 
 def test_a_uniform_environment_without_suns_stays_one_texel():

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tests.support.gpu import gpu
-from tests.support.oracles import diffuse, specular
+from tests.support.oracles import diffuse, specular, sun
 from tests.support.oracles.directions import (
     Array,
     dot,
@@ -113,6 +113,36 @@ def specular_lobe() -> float:
     )
 
 
+def disc(incidence: float) -> float:
+    """In parts of the peak, from a mirror's disc to where it is a point."""
+    radius, worst = 0.00465, 0.0
+    view = spherical(np.cos(incidence), 0.0)
+    frame = np.stack((spherical(np.sin(incidence), np.pi), [0.0, 1.0, 0.0]))
+    for alpha in (0.001, 0.002, 0.005, 0.01, 0.1, 1.0):
+        reach = (radius + 2.0 * alpha) * np.array([0, 0.2, 0.5, 0.8, 1.5, 4])
+        offset, turn = grid(np.tan(np.minimum(reach, 0.5)), [0.0, 0.8, 1.57])
+        around = np.stack((np.cos(turn), np.sin(turn)), axis=-1) @ frame
+        light = view * (-1, -1, 1) + offset[:, None] * -around
+        light = single(light / np.linalg.norm(light, axis=-1, keepdims=True))
+        light = light[light[:, 2] > 0.05]
+        value = gpu().evaluate(
+            f"distribution_ggx_of_disc({ANGLES}, dot(light - mirrored,"
+            " light - mirrored), alpha, radius)",
+            "sun_disc",
+            {"MOKA_BRDF_GLTF": 1},
+            view=np.tile(view, (len(light), 1)),
+            mirrored=np.tile(view * (-1, -1, 1), (len(light), 1)),
+            light=light,
+            alpha=np.full(len(light), alpha),
+            radius=np.full(len(light), radius),
+        )
+        expected = np.array(
+            [sun.mean_distribution(view, x, alpha, radius) for x in light]
+        )
+        worst = max(worst, absolute(value, expected) / expected.max())
+    return worst
+
+
 def diffuse_brdf(name: str) -> float:
     view, light, roughness = pairs(40000)
     value = gpu().evaluate(
@@ -203,6 +233,20 @@ def white_furnace(size: int = 64) -> float:
     return absolute(true.sum(axis=-1) * scale, np.ones(size * size))
 
 
+def mean_fresnel_power() -> float:
+    """Over Lambertian light, against quadrature."""
+    directions, weights = hemisphere(64, 128)
+    cosine = np.linspace(0.0, 1.0, 101)
+    expected = [
+        weights
+        @ (1.0 - np.sqrt(np.maximum(0.5 + 0.5 * directions @ view, 0.0))) ** 5
+        / np.pi
+        for view in spherical(cosine, 0.1)
+    ]
+    value = gpu().evaluate("mean_fresnel_power(c)", "multiscatter", c=cosine)
+    return absolute(value, np.array(expected))
+
+
 MEASURES: dict[str, Callable[[], float]] = {
     "distribution_ggx": distribution_ggx,
     "visibility_smith_ggx_correlated": visibility_smith,
@@ -210,6 +254,12 @@ MEASURES: dict[str, Callable[[], float]] = {
     "fresnel_schlick": fresnel_schlick,
     "blinn_phong": blinn_phong,
     "specular_lobe": specular_lobe,
+    **{
+        f"distribution_ggx_of_disc {degrees} degrees": (
+            lambda degrees=degrees: disc(np.radians(degrees))
+        )
+        for degrees in (0, 30, 60)
+    },
     **{
         f"{function.__name__} {name.lower()}": (
             lambda function=function, name=name: function(name)
@@ -220,4 +270,5 @@ MEASURES: dict[str, Callable[[], float]] = {
     "brdf_table.frag gltf": lambda: table("GLTF"),
     "brdf_table.frag karis": lambda: table("KARIS"),
     "multiscatter_scale": white_furnace,
+    "mean_fresnel_power": mean_fresnel_power,
 }
