@@ -11,7 +11,8 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.core.maths import Array
+from moka.core.maths import Array, decompose
+from moka.model.nodes import NodeTree
 
 __all__ = [
     "PROPERTIES",
@@ -21,6 +22,7 @@ __all__ = [
     "Interpolation",
     "Property",
     "RestPose",
+    "rest_transforms",
 ]
 
 Kind = Literal["node", "material", "light", "camera"]
@@ -136,3 +138,20 @@ class RestPose(Struct, frozen=True, eq=False):
     translation: Array
     rotation: Array
     scale: Array
+
+
+def rest_transforms(
+    tree: NodeTree, known: RestPose | None, rows: NDArray[np.intp]
+) -> tuple[Array, Array, Array]:
+    """Translations, rotations and scales of nodes when nothing plays.
+
+    As ``known`` has them; the matrices of other nodes are taken apart.
+    """
+    parts = decompose(tree.local[rows])
+    if known is not None:
+        given = np.isin(rows, known.nodes)
+        source = np.searchsorted(known.nodes, rows[given])
+        parts[0][given] = known.translation[source]
+        parts[1][given] = known.rotation[source]
+        parts[2][given] = known.scale[source]
+    return parts

@@ -11,10 +11,11 @@ from msgspec import Struct
 
 from moka.model import schema
 from moka.model.animation import AnimationTarget, Kind
+from moka.model.model import Model
 from moka.model.source import GltfSource
 from moka.model.uri import quote
 
-__all__ = ["EXTENSION", "read_pointer", "targets_of"]
+__all__ = ["EXTENSION", "pointer_to", "read_pointer", "targets_of"]
 
 EXTENSION = "KHR_animation_pointer"
 
@@ -74,6 +75,12 @@ _PLACES: dict[str, tuple[Kind, dict[str, str]]] = {
     "cameras": ("camera", _CAMERAS),
     "extensions/KHR_lights_punctual/lights": ("light", _LIGHTS),
 }
+_PLACE_OF: dict[Kind, str] = {
+    "node": "nodes",
+    "material": "materials",
+    "camera": "cameras",
+    "light": "extensions/KHR_lights_punctual/lights",
+}
 _POINTER = re.compile(
     rf"/({'|'.join(_PLACES)})/(\d{{1,9}})/(.+?)(?:(?<=weights)/(\d{{1,9}}))?"
 )
@@ -96,6 +103,25 @@ def read_pointer(source: GltfSource, path: str, target: schema.Property) -> str:
             f"{path}.extensions", f"{EXTENSION} is missing for a pointer"
         )
     return found.pointer
+
+
+def pointer_to(target: AnimationTarget, model: Model) -> str:
+    """The pointer that moves ``target`` in a file whose order is the model's.
+
+    The reverse of :func:`targets_of`.
+    """
+    place = _PLACE_OF[target.kind]
+    rests = [
+        rest
+        for rest, name in _PLACES[place][1].items()
+        if name == target.property
+    ]
+    if target.kind == "camera":
+        projection = model.cameras[target.index].projection
+        kind = type(projection).__name__.lower()
+        rests = [rest for rest in rests if rest.startswith(kind)]
+    element = "" if target.element is None else f"/{target.element}"
+    return f"/{place}/{target.index}/{rests[0]}{element}"
 
 
 def targets_of(

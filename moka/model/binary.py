@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["BinaryWriter"]
 
+_UNSIGNED_BYTE = 5121
 _FLOAT, _UNSIGNED_SHORT, _UNSIGNED_INT = 5126, 5123, 5125
 _VERTICES, _INDICES = 34962, 34963  # targets of buffer views
 _TYPES = {2: "VEC2", 3: "VEC3", 4: "VEC4"}
@@ -74,6 +75,30 @@ class BinaryWriter:
                 type="VEC4",
             )
         return self._accessors[key]
+
+    def times(self, array: NDArray[np.float32]) -> int:
+        """The accessor of the times (K,) of keyframes, in increasing order."""
+        key = id(array), "times"
+        if key not in self._accessors:
+            self._accessors[key] = self._accessor(
+                np.ascontiguousarray(array, "<f4"),
+                None,
+                componentType=_FLOAT,
+                type="SCALAR",
+                min=[float(array[0])],
+                max=[float(array[-1])],
+            )
+        return self._accessors[key]
+
+    def values(self, array: NDArray[np.float32 | np.uint8]) -> int:
+        """The accessor of numbers (N,) or vectors (N, C) of keyframes."""
+        is_float = array.dtype.kind == "f"
+        return self._accessor(
+            np.ascontiguousarray(array, "<f4" if is_float else "u1"),
+            None,
+            componentType=_FLOAT if is_float else _UNSIGNED_BYTE,
+            type="SCALAR" if array.ndim == 1 else _TYPES[array.shape[1]],
+        )
 
     def matrices(self, array: Array) -> int:
         """The accessor of matrices (N, 4, 4), [row, column], as float32."""

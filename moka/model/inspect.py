@@ -9,6 +9,7 @@ from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
 from moka.core.image_header import pixel_size
 from moka.material.material import Material
+from moka.model.animation import Animation
 from moka.model.cameras import CameraDescription, Perspective
 from moka.model.lights import PunctualLight
 from moka.model.model import Model
@@ -57,6 +58,7 @@ def describe(model: Model) -> dict[str, Any]:
         "textures": textures,
         "cameras": [_camera(camera) for camera in model.cameras],
         "lights": [_light(light) for light in model.lights],
+        "animations": [_animation(each) for each in model.animations],
         "extensions": list(model.extensions),
         "unsupported_extensions": list(model.unsupported_extensions),
         "omitted": dict(model.omitted),
@@ -92,6 +94,7 @@ def format_description(description: dict[str, Any]) -> str:
         ("textures", "textures", _texture_line),
         ("cameras", "cameras", _camera_line),
         ("lights", "lights", _light_line),
+        ("animations", "animations", _animation_line),
     ):
         lines.append(f"  {title:<11} {len(description[key])}")
         lines += [f"    {line(each)}" for each in description[key]]
@@ -241,6 +244,22 @@ def _light(light: PunctualLight) -> dict[str, Any]:
     }
 
 
+def _animation(animation: Animation) -> dict[str, Any]:
+    times = {id(channel.times) for channel in animation.channels}
+    return {
+        "name": animation.name,
+        "duration": animation.duration,
+        "channels": len(animation.channels),
+        "sets_of_times": len(times),
+        "properties": sorted(
+            {
+                f"{channel.target.kind} {channel.target.property}"
+                for channel in animation.channels
+            }
+        ),
+    }
+
+
 def _material_line(material: dict[str, Any]) -> str:
     words = [material["alpha_mode"].lower()]
     words += ["double-sided"] if material["double_sided"] else []
@@ -268,6 +287,14 @@ def _camera_line(camera: dict[str, Any]) -> str:
 def _light_line(light: dict[str, Any]) -> str:
     unit = "lx" if light["type"] == "directional" else "cd"
     return f"{_name(light)}: {light['type']}, {light['intensity']:g} {unit}"
+
+
+def _animation_line(animation: dict[str, Any]) -> str:
+    return (
+        f"{_name(animation)}: {animation['duration']:.4g} s, "
+        f"{animation['channels']} channels; "
+        + ", ".join(animation["properties"])
+    )
 
 
 def _name(thing: dict[str, Any]) -> str:

@@ -34,8 +34,9 @@ _LIGHTS = "KHR_lights_punctual"
 def save_model(model: Model, path: str | os.PathLike[str]) -> None:
     """Write ``model`` to ``path``: .glb, or .gltf with a .bin beside it.
 
-    Geometry as float32, textures as embedded images, nodes as matrices,
-    skins, morph targets, cameras, punctual lights and scenes. What moka does
+    Geometry as float32, textures as embedded images, nodes as matrices
+    unless they move, skins, morph targets, animations, cameras, punctual
+    lights and scenes. What moka does
     not read of a file is not written either. Raises ModelError if the
     suffix is another, the geometry was released, a texture is neither PNG
     nor JPEG or the file cannot be written.
@@ -100,6 +101,14 @@ def _document(model: Model) -> "pygltflib.GLTF2":
                 weights=list(mesh.weights),
             )
         )
+    if model.animations:
+        from moka.model.save_animations import (
+            split_animated_nodes,
+            write_animations,
+        )
+
+        split_animated_nodes(gltf, model)
+        materials.extensions |= write_animations(gltf, model, binary)
     binary.finish()
     if model.lights:
         gltf.extensions[_LIGHTS] = {

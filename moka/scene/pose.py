@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from moka.core.interpolation import lerp, slerp
-from moka.core.maths import Array, decompose
+from moka.core.maths import Array
 from moka.material.material import Material, TextureTransform
-from moka.model.animation import AnimationTarget, Property, RestPose
+from moka.model.animation import AnimationTarget, Property, rest_transforms
 from moka.model.model import Model
 from moka.scene.forest import Rows
 from moka.scene.morph_weights import MorphWeights
@@ -60,7 +60,7 @@ class PoseLayout:
         if moved:
             # A node's matrix is made of all three, whichever of them move.
             nodes = np.array(sorted(moved), np.intp)
-            parts = _rest_transforms(model, nodes)
+            parts = rest_transforms(model.nodes, model.rest_pose, nodes)
             for name, column in zip(_TRANSFORM, parts, strict=True):
                 self.things["node", name] = nodes
                 self.rest["node", name] = column
@@ -96,18 +96,6 @@ def blended(first: Pose, second: Pose, weight: float) -> Pose:
         else:
             result[property_] = lerp(column, second[property_], along)
     return result
-
-
-def _rest_transforms(model: Model, nodes: Rows) -> tuple[Array, Array, Array]:
-    """Translations, rotations and scales of nodes as the file has them."""
-    parts = decompose(model.nodes.local[nodes])
-    known: RestPose | None = model.rest_pose
-    if known is not None:
-        given = np.isin(nodes, known.nodes)
-        source = np.searchsorted(known.nodes, nodes[given])
-        for part, name in zip(parts, _TRANSFORM, strict=True):
-            part[given] = getattr(known, name)[source]
-    return parts
 
 
 def _rest(

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from moka.core.errors import ModelError
-from moka.model import load_model
+from moka.model import Model, load_model
 from moka.model.animation import PROPERTIES, AnimationTarget
+from moka.model.animation_pointer import pointer_to
 from tests.support.animated import AnimatedFile
 
 LIGHTS = {"lights": [{"type": "spot", "spot": {}}]}
@@ -45,10 +46,10 @@ def rich_file() -> AnimatedFile:
     return file
 
 
-def channels_of(pointer: str, width: int) -> list[Any]:
+def model_of(pointer: str, width: int) -> Model:
     file = rich_file()
     file.channel(pointer, [0, 1], np.ones((2, width)), "STEP")
-    return list(load_model(file.glb()).animations[0].channels)
+    return load_model(file.glb())
 
 
 @pytest.mark.parametrize(
@@ -123,10 +124,12 @@ def channels_of(pointer: str, width: int) -> list[Any]:
 def test_a_pointer_becomes_a_target(
     pointer: str, width: int, kind: str, name: str
 ) -> None:
-    (channel,) = channels_of(pointer, width)
+    model = model_of(pointer, width)
+    (channel,) = model.animations[0].channels
     target = channel.target
     assert (target.kind, target.property) == (kind, name)
     assert PROPERTIES[kind, name] == width == channel.values.shape[1]
+    assert pointer_to(target, model) == pointer
 
 
 def test_the_weights_of_a_mesh_are_those_of_its_nodes() -> None:
@@ -209,7 +212,7 @@ def test_what_moka_does_not_draw_is_left_out_and_counted() -> None:
 )
 def test_a_pointer_to_nothing_is_refused(pointer: str, message: str) -> None:
     with pytest.raises(ModelError) as caught:
-        channels_of(pointer, 3)
+        model_of(pointer, 3)
     assert message in str(caught.value)
     assert (
         "animations[0].channels[0].target.extensions.KHR_animation_pointer"

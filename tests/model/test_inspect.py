@@ -30,6 +30,7 @@ from moka.model import (
     model_of,
 )
 from tests.model.files import glb, triangle
+from tests.support.animated import AnimatedFile
 
 
 def encoded(
@@ -186,3 +187,22 @@ def test_says_what_to_print_for_the_demo() -> None:
     text = format_description(describe(demo_model()))
     assert text.startswith("demo\n")
     assert "256x256" in text
+
+
+def test_says_how_long_animations_are_and_what_they_move() -> None:
+    file = AnimatedFile()
+    times = file.accessor([0.0, 2.5])
+    for path in ("translation", "scale"):
+        file.channel((0, path), times, np.ones((2, 3)), animation="hop")
+    description = describe(load_model(file.glb()))
+    assert description["animations"] == [
+        {
+            "name": "hop",
+            "duration": 2.5,
+            "channels": 2,
+            "sets_of_times": 1,
+            "properties": ["node scale", "node translation"],
+        }
+    ]
+    line = "    hop: 2.5 s, 2 channels; node scale, node translation"
+    assert line in format_description(description).splitlines()
