@@ -16,6 +16,7 @@ from moka.commands.commands import (
     Clear,
     Command,
     FillBuffer,
+    FillTexture,
     GenerateMipmaps,
     ReadPixels,
     ResolveFramebuffer,
@@ -61,6 +62,9 @@ class CommandRunner:
                 self._state.scissor(rectangle)
             case FillBuffer(buffer, data, offset):
                 self._get(buffer).write(data, offset)
+                self.uploaded += len(data)
+            case FillTexture(texture, data, row, row_count):
+                self._get(texture).write_rows(data, row, row_count)
                 self.uploaded += len(data)
             case GenerateMipmaps(texture):
                 self._get(texture).generate_mipmaps()

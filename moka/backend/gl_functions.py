@@ -109,6 +109,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
         _INT,
         _BOOL,
     ),
+    "TexSubImage2D": (None, _UINT, *[_INT] * 5, _UINT, _UINT, _POINTER),
     "TexParameteri": (None, _UINT, _UINT, _INT),
     "UseProgram": (None, _UINT),
     "VertexAttribPointer": (

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from moka.backend.batching import Batches, MeshTable, merge_draws
 from moka.backend.protocol import BackendInfo, FrameCounters, TextureData
 from moka.commands.command_list import Recording
-from moka.commands.commands import FillBuffer, ReadPixels
+from moka.commands.commands import FillBuffer, FillTexture, ReadPixels
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,
@@ -127,6 +127,8 @@ class RecordingBackend:
                 self.contents[step.buffer] = (
                     before[: step.offset] + step.data + before[end:]
                 )
+            elif isinstance(step, FillTexture):
+                uploaded += len(step.data)
             elif isinstance(step, ReadPixels):
                 _, _, width, height = step.rectangle
                 step.into.data = np.zeros(

@@ -17,6 +17,7 @@ from moka.commands.commands import (
     Clear,
     Command,
     FillBuffer,
+    FillTexture,
     GenerateMipmaps,
     Readback,
     ReadPixels,
@@ -101,6 +102,18 @@ class CommandBuffer:
         self._use(buffer, ResourceKind.BUFFER)
         content = data.tobytes() if isinstance(data, np.ndarray) else data
         self._entries.append(FillBuffer(buffer, bytes(content), offset))
+
+    def fill_texture(
+        self, texture: Handle, rows: NDArray[Any], row: int = 0
+    ) -> None:
+        """Write ``rows`` (R, width, channels), copied now, from ``row`` on.
+
+        They go to level 0 of a 2D texture, in its own format.
+        """
+        self._use(texture, ResourceKind.TEXTURE)
+        self._entries.append(
+            FillTexture(texture, rows.tobytes(), row, len(rows))
+        )
 
     def generate_mipmaps(self, texture: Handle) -> None:
         """Make the lower mip levels of ``texture`` from level 0."""
@@ -290,6 +303,17 @@ class CommandList:
     ) -> None:
         """:meth:`CommandBuffer.fill_buffer` in a buffer of its own."""
         self.command_buffer(key).fill_buffer(buffer, data, offset)
+
+    def fill_texture(
+        self,
+        texture: Handle,
+        rows: NDArray[Any],
+        row: int = 0,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.fill_texture` in a buffer of its own."""
+        self.command_buffer(key).fill_texture(texture, rows, row)
 
     def generate_mipmaps(
         self, texture: Handle, *, key: SortKey | int | None = None

@@ -18,6 +18,7 @@ __all__ = [
     "Clear",
     "Command",
     "FillBuffer",
+    "FillTexture",
     "GenerateMipmaps",
     "ReadPixels",
     "Readback",
@@ -62,6 +63,18 @@ class FillBuffer(Struct, frozen=True):
     buffer: Handle
     data: bytes
     offset: int = 0
+
+
+class FillTexture(Struct, frozen=True):
+    """Write rows of texels from row ``row`` on of level 0 of ``texture``.
+
+    ``data`` holds whole rows in the texture's own format.
+    """
+
+    texture: Handle
+    data: bytes
+    row: int
+    row_count: int
 
 
 class GenerateMipmaps(Struct, frozen=True):
@@ -112,6 +125,7 @@ Command: TypeAlias = (
     | SetViewport
     | SetScissor
     | FillBuffer
+    | FillTexture
     | GenerateMipmaps
     | ResolveFramebuffer
     | ReadPixels

@@ -9,8 +9,10 @@ the hash: the value itself is the key, so two descriptions never collide).
 
 from collections.abc import Collection
 from enum import IntFlag, auto
+from itertools import chain
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
@@ -18,11 +20,13 @@ from moka.core.image_header import has_deep_texels, pixel_size
 from moka.material.material import AlphaMode, Material, Texture
 
 __all__ = [
+    "MORPH_TEXELS",
     "Feature",
     "MaterialDescription",
     "TextureUse",
     "defines_of",
     "describe_material",
+    "morph_texels",
     "texture_slots",
 ]
 
@@ -48,6 +52,17 @@ class Feature(IntFlag):
     POINTS = auto()
 
 
+# What a morph target adds to a vertex, in texels of four numbers: which
+# attributes share one. All coordinates of textures do.
+MORPH_TEXELS: dict[str, tuple[str, ...]] = {
+    "POSITION": ("POSITION",),
+    "NORMAL": ("NORMAL",),
+    "TANGENT": ("TANGENT",),
+    "UV": ("TEXCOORD_0", "TEXCOORD_1"),
+    "COLOUR": ("COLOR_0",),
+}
+
+
 class TextureUse(Struct, frozen=True):
     """That a slot has a texture, and how its coordinates are made."""
 
@@ -67,6 +82,15 @@ class MaterialDescription(Struct, frozen=True):
     features: Feature
     textures: tuple[TextureUse, ...] = ()
     carriers: tuple[tuple[str, str], ...] = ()
+    # Sets of four joints that vertices follow.
+    influence_sets: int = 0
+    # The attributes that morph targets change, in the order of MORPH_TEXELS.
+    morphed: tuple[str, ...] = ()
+
+    @property
+    def deforms(self) -> bool:
+        """Whether vertices move within the object."""
+        return bool(self.influence_sets or self.morphed)
 
     @property
     def is_blended(self) -> bool:
@@ -86,6 +110,11 @@ class MaterialDescription(Struct, frozen=True):
         return (
             "POSITION",
             *(name for name, flag in wanted.items() if flag in self.features),
+            *(
+                f"{name}_{number}"
+                for number in range(self.influence_sets)
+                for name in ("JOINTS", "WEIGHTS")
+            ),
         )
 
 
@@ -94,14 +123,16 @@ def describe_material(
     attributes: Collection[str],
     topology: Topology = Topology.TRIANGLES,
     *,
+    morphed: Collection[str] = (),
     carries: bool = True,
 ) -> MaterialDescription:
     """The description of ``material`` on vertices with ``attributes``.
 
-    Only what changes the picture is kept: a normal map means nothing to an
-    unlit surface or without texture coordinates, an emissive texture
-    nothing under a black factor, a tangent nothing without a normal map.
-    Unless it ``carries``, no texture takes up the values of another.
+    ``morphed`` are the attributes that morph targets change. Only what
+    changes the picture is kept: a normal map means nothing to an unlit
+    surface or without texture coordinates, an emissive texture nothing
+    under a black factor, a tangent nothing without a normal map. Unless it
+    ``carries``, no texture takes up the values of another.
     Raises ModelError for a texture coordinate set above 1.
     """
     slots = texture_slots(material)
@@ -148,7 +179,31 @@ def describe_material(
         TextureUse(slot, texture.uv_set, texture.transform is not None)
         for slot, texture in slots.items()
     )
-    return MaterialDescription(features, tuple(uses), tuple(carriers.items()))
+    sets = sum(name.startswith("JOINTS_") for name in attributes)
+    description = MaterialDescription(
+        features, tuple(uses), tuple(carriers.items()), sets
+    )
+    if not morphed:
+        return description
+    read = set(morphed) & set(description.attributes)
+    in_order = tuple(
+        name for name in chain(*MORPH_TEXELS.values()) if name in read
+    )
+    return replace(description, morphed=in_order)
+
+
+def morph_texels(morphed: Collection[str]) -> dict[str, int]:
+    """Which texel of a vertex holds what a target adds to ``morphed``.
+
+    Only those that are needed are there and counted, by their names in
+    :data:`MORPH_TEXELS`.
+    """
+    needed = [
+        texel
+        for texel, names in MORPH_TEXELS.items()
+        if not set(names).isdisjoint(morphed)
+    ]
+    return {texel: number for number, texel in enumerate(needed)}
 
 
 def texture_slots(material: Material) -> dict[str, Texture]:
@@ -183,6 +238,13 @@ def defines_of(description: MaterialDescription) -> dict[str, str | int]:
     for value, slot in description.carriers:
         defines[f"MOKA_{value.upper()}_CARRIER"] = f"{slot}_texture"
         defines["MOKA_CARRIED_UV"] = defines[f"MOKA_{slot.upper()}_UV"]
+    if description.influence_sets:
+        defines["MOKA_SKIN_SETS"] = description.influence_sets
+    if description.morphed:
+        texels = morph_texels(description.morphed)
+        defines["MOKA_MORPH_TEXELS"] = len(texels)
+        for texel, number in texels.items():
+            defines[f"MOKA_MORPH_{texel}"] = number
     return defines
 
 

@@ -159,6 +159,13 @@ class Primitive:
         return sum(name.startswith("JOINTS_") for name in self.attributes)
 
     @property
+    def morphed(self) -> frozenset[str]:
+        """The attributes that its morph targets change."""
+        if self.targets is None:
+            return frozenset()
+        return self.targets.attributes
+
+    @property
     def size(self) -> int:
         """Bytes of the attributes and indices that are still held."""
         size = 0 if self.indices is None else self.indices.nbytes
@@ -212,14 +219,23 @@ class Primitive:
 class Mesh(Struct, eq=False):
     """Primitives that nodes place together.
 
-    ``target_count`` is how many morph targets each of them has, ``weights``
-    are the default weights of these; empty for zeros.
+    ``weights`` are the default weights of their morph targets, empty for
+    zeros; ``target_count`` is how many targets each of them has, by default
+    as many as they have.
     """
 
     name: str
     primitives: list[Primitive]
     weights: list[float] = []
     target_count: int = 0
+
+    def __post_init__(self) -> None:
+        """Count the targets of primitives that were made in memory."""
+        if not self.target_count:
+            self.target_count = max(
+                (len(each.targets or ()) for each in self.primitives),
+                default=0,
+            )
 
 
 def _bounds(positions: NDArray[np.float32]) -> Bounds:

@@ -27,7 +27,13 @@ class DrawGatherer:
     with the objects is kept until one of them moves.
     """
 
-    def __init__(self, drawables: Drawables, prepared: PreparedScene) -> None:
+    def __init__(
+        self,
+        drawables: Drawables,
+        prepared: PreparedScene,
+        poses: NDArray[np.uint32] | None = None,
+    ) -> None:
+        """``poses`` (D, 2) are the places of draws in the pose texture."""
         self._drawables = drawables
         rows = prepared.rows[drawables.primitive]
         count = len(rows)
@@ -41,6 +47,8 @@ class DrawGatherer:
         self._instances = np.zeros(count, INSTANCE)
         self._instances["material"] = rows["material"]
         self._instances["object"] = drawables.object
+        if poses is not None:
+            self._instances["spare"] = poses
         self._positions = np.zeros((count, 3))
         self._version = -1
 
@@ -61,6 +69,8 @@ class DrawGatherer:
         if self._version != transforms.version:
             self._version = transforms.version
             world = transforms.world[drawables.row, :3]
+            if drawables.poses is not None:
+                drawables.poses.place(world)
             # What float32 cannot hold is infinite, and not drawn.
             with np.errstate(over="ignore"):
                 self._instances["transform"] = world

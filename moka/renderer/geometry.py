@@ -24,7 +24,7 @@ from moka.commands.descriptors import (
 )
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
-from moka.model.mesh import Primitive
+from moka.model.mesh import INFLUENCES, Primitive
 
 __all__ = ["GeometryPool"]
 
@@ -36,6 +36,7 @@ _ATTRIBUTES = {
     "TEXCOORD_0": ("uv_0", 2),
     "TEXCOORD_1": ("uv_1", 2),
     "COLOR_0": ("colour_0", 4),
+    **{name: (name.lower(), 4) for name in INFLUENCES},
 }
 
 
@@ -47,9 +48,10 @@ class _Key(Struct, frozen=True):
 
 
 class _Upload(Struct):
-    """Meshes that share buffers, and how many of them are in use."""
+    """Meshes that share buffers, and where their vertices begin."""
 
     meshes: dict[_Key, Handle]
+    base_vertices: dict[_Key, int]
     buffers: list[Handle]
 
 
@@ -95,6 +97,19 @@ class GeometryPool:
             self._uploads.append(upload)
             self._meshes.update(upload.meshes)
         return [self._meshes[key] for key in keys]
+
+    def base_vertex(self, primitive: Primitive, wanted: tuple[str, ...]) -> int:
+        """Where a primitive's vertices begin in the buffer it shares.
+
+        What :meth:`meshes` was last asked for.
+        """
+        key = _Key(primitive.geometry, wanted)
+        (begin,) = (
+            upload.base_vertices[key]
+            for upload in self._uploads
+            if key in upload.base_vertices
+        )
+        return begin
 
     def _free(self, upload: _Upload) -> None:
         for key in upload.meshes:
@@ -143,9 +158,10 @@ def _upload(
         )
         index_buffer = _buffer(device, BufferUsage.INDEX, joined)
         buffers.append(index_buffer)
-    meshes = {}
+    meshes, base_vertices = {}, {}
     base_vertex = first = 0
     for key, primitive in members.items():
+        base_vertices[key] = base_vertex
         count = primitive.index_count or primitive.vertex_count
         meshes[key] = device.create_mesh(
             MeshDescriptor(
@@ -161,7 +177,7 @@ def _upload(
         )
         base_vertex += primitive.vertex_count
         first += count if indices else 0
-    return _Upload(meshes, buffers)
+    return _Upload(meshes, base_vertices, buffers)
 
 
 def _interleave(

@@ -73,6 +73,8 @@ class SharedBindings(Struct, frozen=True):
     lights: Handle | None
     maps: EnvironmentMaps
     table: Handle | None
+    # Of meshes with skins or morph targets.
+    poses: tuple[TextureBinding, ...] = ()
 
 
 class PreparedScene:
@@ -196,6 +198,8 @@ class PreparedScene:
             ]
             if shared.lights is not None:
                 uniforms.append(UniformBinding("Lights", shared.lights))
+        if permutation.material.deforms:
+            bound += shared.poses
         descriptor = BindGroupDescriptor(tuple(bound), tuple(uniforms))
         if descriptor not in self._groups:
             group = self._device.create_bind_group(descriptor)

@@ -53,6 +53,7 @@ from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from moka.renderer.pose_texture import PoseTexture
     from moka.renderer.surface_values import SurfaceValues, ValueTargets
 
 __all__ = ["Renderer"]
@@ -115,6 +116,7 @@ class Renderer:
         self._prepared: PreparedScene | None = None
         self._prepared_key: object = None
         self._gatherer: DrawGatherer
+        self._poses: PoseTexture | None = None
         self._values: SurfaceValues | None = None
 
     def close(self) -> None:
@@ -142,6 +144,7 @@ class Renderer:
         """
         scene.update()
         materials = self._materials.describe(scene, camera, self.size)
+        self._update_pose_texture(scene, materials)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -210,6 +213,7 @@ class Renderer:
 
         scene.update()
         materials = self._materials.describe(scene, camera, self.size)
+        self._update_pose_texture(scene, materials)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -235,6 +239,7 @@ class Renderer:
             self.size,
             commands,
             PASS_VALUES,
+            self._poses,
         )
 
     def read_values(
@@ -300,6 +305,23 @@ class Renderer:
             framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
         )
 
+    def _update_pose_texture(
+        self, scene: Scene, materials: SceneMaterials
+    ) -> None:
+        """The texture of what moves within itself, if anything does."""
+        if self._poses is not None:
+            if self._poses.made_for is materials:
+                return
+            self._poses.destroy()
+            self._poses = None
+        poses = scene.drawables.poses
+        if poses is not None:
+            from moka.renderer.pose_texture import PoseTexture
+
+            self._poses = PoseTexture(
+                self.device, poses, scene.drawables.primitives, materials
+            )
+
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
         changed = self._sources.update_maps(
             scene.environment,
@@ -355,13 +377,18 @@ class Renderer:
                 self._sources.buffer(capacity) if capacity else None,
                 maps,
                 self._sources.table(settings.brdf) if needs_table else None,
+                () if self._poses is None else self._poses.bindings,
             ),
             self._programs,
             self._geometry,
             self._materials.textures,
         )
         self._prepared_key = key
-        self._gatherer = DrawGatherer(scene.drawables, self._prepared)
+        self._gatherer = DrawGatherer(
+            scene.drawables,
+            self._prepared,
+            None if self._poses is None else self._poses.places,
+        )
         return self._prepared
 
     def _update_targets(self) -> Targets:
@@ -393,6 +420,8 @@ class Renderer:
     ) -> None:
         is_reversed = self.device.info.clip_control
         capacity = light_capacity(len(lights)) if prepared.is_lit else 0
+        if self._poses is not None:
+            self._poses.update(visible, self._geometry, commands)
         setup = commands.command_buffer(SortKey(PASS_SCENE))
         setup.fill_buffer(self._frame, self._frame_values(scene, view, lights))
         if capacity:
@@ -439,6 +468,7 @@ class Renderer:
             scene.environment_intensity,
             scene.background == "environment",
             scene.transforms.version,
+            scene.pose_version,
             scene.visibility_version,
             view.position.tobytes(),
             view.clip_from_world.tobytes(),

@@ -62,7 +62,7 @@ class SceneMaterials:
         images: dict[TextureRequest, list[EncodedImage]] = {}
         reads: dict[TextureRequest, list[tuple[int, Texture]]] = {}
         known: dict[
-            tuple[Material, tuple[str, ...], object],
+            tuple[Material, tuple[str, ...], object, frozenset[str]],
             tuple[MaterialDescription, dict[str, TextureRequest]],
         ] = {}
         alone = _images_of_their_own(
@@ -72,12 +72,18 @@ class SceneMaterials:
         for index in self.drawn:
             primitive = primitives[index]
             material = primitive.material or _DEFAULT_MATERIAL
-            key = (material, tuple(primitive.attributes), primitive.topology)
+            key = (
+                material,
+                tuple(primitive.attributes),
+                primitive.topology,
+                primitive.morphed,
+            )
             if key not in known:
                 description = describe_material(
                     material,
                     primitive.attributes,
                     primitive.topology,
+                    morphed=primitive.morphed,
                     carries=alone.issuperset(_images(material)),
                 )
                 known[key] = (

@@ -6,7 +6,7 @@ not compiled.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,9 @@ from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.textures import TexturePool
 from moka.renderer.view import View
 from moka.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from moka.renderer.pose_texture import PoseTexture
 
 __all__ = [
     "GROUPS",
@@ -156,13 +159,16 @@ class SurfaceValues:
         size: tuple[int, int],
         commands: CommandList,
         pass_: int,
+        poses: "PoseTexture | None" = None,
     ) -> ValueTargets:
         """Record the draws ``visible`` (V,) of ``scene`` as pass ``pass_``.
 
         Returns the targets, cleared to 0 where nothing is; they are valid
         until the next call.
         """
-        prepared = self._prepare(scene, materials, view, groups)
+        prepared = self._prepare(scene, materials, view, groups, poses)
+        if poses is not None:
+            poses.update(visible, self._pools[1], commands)
         targets = self._update_targets(size, groups)
         is_reversed = self._device.info.clip_control
         buffer = commands.command_buffer(SortKey(pass_))
@@ -187,6 +193,7 @@ class SurfaceValues:
         materials: SceneMaterials,
         view: View,
         groups: tuple[str, ...],
+        poses: "PoseTexture | None",
     ) -> PreparedScene:
         lighting = LightingDescription(
             environment=False,
@@ -208,11 +215,21 @@ class SurfaceValues:
             scene.drawables.primitives,
             materials.without_blending(),
             lighting,
-            SharedBindings(self._frame, None, EnvironmentMaps(), None),
+            SharedBindings(
+                self._frame,
+                None,
+                EnvironmentMaps(),
+                None,
+                () if poses is None else poses.bindings,
+            ),
             *self._pools,
         )
         self._prepared_key = key
-        self._gatherer = DrawGatherer(scene.drawables, self._prepared)
+        self._gatherer = DrawGatherer(
+            scene.drawables,
+            self._prepared,
+            None if poses is None else poses.places,
+        )
         return self._prepared
 
     def _update_targets(

@@ -26,6 +26,8 @@ from moka.scene.transforms import TransformTree, check_affine
 
 if TYPE_CHECKING:
     from moka.scene.clips import Clips
+    from moka.scene.morph_weights import MorphWeights
+    from moka.scene.poses import Poses
 
 __all__ = ["Drawables", "ModelLayout"]
 
@@ -35,8 +37,10 @@ class ModelLayout:
 
     ``primitives`` are those of the meshes in use. Of D draws, ``node`` (D,)
     is the row in the model's nodes, ``primitive`` (D,) the position in
-    ``primitives`` and ``bounds`` (D, 2, 3) the box in the node's space;
-    ``levels`` are their levels of detail, None without any.
+    ``primitives``, ``bounds`` (D, 2, 3) the box in the node's space and
+    ``skin`` (D,) the position in the model's skins, -1 for what is rigid;
+    ``levels`` are their levels of detail, None without any. ``deforms``
+    tells whether there are skins or morph targets.
     ``cameras`` and ``lights`` are pairs of a node's row and what it places.
     Copies of a model in one scene and variant share all this.
 
@@ -78,6 +82,12 @@ class ModelLayout:
         self.levels = joined_levels(
             [(levels, 0), (node_levels(model.nodes, self.node), 0)]
         )
+        self.skin: Rows = np.full(len(self.node), -1)
+        if any(primitive.influence_sets for primitive in self.primitives):
+            self._find_skins()
+        self.deforms = bool((self.skin >= 0).any()) or any(
+            primitive.targets is not None for primitive in self.primitives
+        )
         boxes = [primitive.bounds for primitive in self.primitives]
         self.bounds: Array = np.reshape(
             np.array(boxes, np.float64), (-1, 2, 3)
@@ -89,6 +99,21 @@ class ModelLayout:
         from moka.scene.clips import Clips
 
         return Clips(self.model)
+
+    def _find_skins(self) -> None:
+        """Set ``skin``; rigid draws get primitives that follow no joints."""
+        skin_of_node = np.full(len(self.model.nodes), -1)
+        for row, skin in self.model.nodes.skins.items():
+            skin_of_node[row] = skin
+        follows = np.array(
+            [bool(each.influence_sets) for each in self.primitives]
+        )[self.primitive]
+        self.skin = np.where(follows, skin_of_node[self.node], -1)
+        loose = follows & (self.skin < 0)
+        for position in np.unique(self.primitive[loose]).tolist():
+            alike = loose & (self.primitive == position)
+            self.primitive[alike] = len(self.primitives)
+            self.primitives.append(self.primitives[position].as_rigid())
 
 
 # What a row of Drawables has.
@@ -114,14 +139,16 @@ class Drawables:
     ``world_bounds`` are float64 (D, 2, 3), least and greatest corner;
     ``mirrored`` (D,) tells where the world matrix turns front faces
     clockwise. The last two are as of the last :meth:`refresh`. ``levels``
-    are the levels of detail that draws belong to, None without any;
-    ``total`` is how many draws there were before :meth:`only`.
+    are the levels of detail that draws belong to, ``poses`` those of skins
+    and morph targets, both None without any; ``total`` is how many draws
+    there were before :meth:`only`.
     """
 
     def __init__(
         self,
         layouts: Sequence[ModelLayout] = (),
         node_rows: Sequence[Rows] = (),
+        weights: Sequence["MorphWeights | None"] = (),
     ) -> None:
         self.primitives, primitive_of = _joined(layouts)
         none = np.empty(0, np.intp)
@@ -154,19 +181,27 @@ class Drawables:
         self.world_bounds: Array = np.zeros_like(self.local_bounds)
         self.mirrored: NDArray[np.bool_] = np.zeros(len(self.row), np.bool_)
         self._version = -1  # Of the transforms; none is that old.
+        self.poses: Poses | None = None
+        if any(layout.deforms for layout in layouts):
+            self.poses = _poses(self, placed, weights)
 
     def __len__(self) -> int:
         return len(self.row)
 
     def refresh(self, tree: TransformTree) -> None:
-        """Follow what moved in ``tree`` since the last call."""
-        if self._version == tree.version:
+        """Follow what moved in ``tree``, and poses, since the last call."""
+        if self._version == tree.version and self.poses is None:
             return
         touched = np.zeros(len(tree.world), np.bool_)
         touched[tree.changed_since(self._version)] = True
         self._version = tree.version
-        draws = np.flatnonzero(touched[self.row])
-        world = tree.world[self.row[draws]]
+        self.place_boxes(np.flatnonzero(touched[self.row]), tree.world)
+        if self.poses is not None:
+            self.poses.refresh(self, tree.world, touched)
+
+    def place_boxes(self, draws: Rows, matrices: Array) -> None:
+        """Boxes and winding of ``draws`` as their rows of ``matrices`` are."""
+        world = matrices[self.row[draws]]
         # What overflows is not finite, and culling keeps that.
         with np.errstate(over="ignore", invalid="ignore"):
             self.world_bounds[draws] = transform_bounds(
@@ -185,11 +220,32 @@ class Drawables:
             setattr(made, name, getattr(self, name)[kept])
         used, made.primitive = np.unique(made.primitive, return_inverse=True)
         made.primitives = [self.primitives[index] for index in used.tolist()]
+        if self.poses is not None:
+            made.poses = self.poses.only(kept, made)
+            made._version = -1  # So that these follow everything once.
         return made
 
     def bounds(self, shown: NDArray[np.bool_]) -> Array | None:
         """The world box (2, 3) of the draws ``shown`` (D,), None of none."""
         return union_bounds(self.world_bounds[shown]) if shown.any() else None
+
+
+def _poses(
+    drawables: Drawables,
+    placed: Sequence[tuple[ModelLayout, Rows]],
+    weights: Sequence["MorphWeights | None"],
+) -> "Poses":
+    from moka.scene.poses import PosedModel, Poses
+
+    return Poses(
+        drawables,
+        [
+            PosedModel(layout.model.skins, rows, each)
+            for (layout, rows), each in zip(placed, weights, strict=True)
+        ],
+        np.concatenate([layout.node for layout, _ in placed]),
+        np.concatenate([layout.skin for layout, _ in placed]),
+    )
 
 
 def _pairs(

@@ -228,6 +228,7 @@ class Scene:
             self.drawables = Drawables(
                 [model.layout for model in models],
                 [model.rows for model in models],
+                [model.morph_weights for model in models],
             )
         self.drawables.refresh(self.transforms)
         if self._hidden_version != self.transforms.hidden_version:
@@ -267,6 +268,12 @@ class Scene:
         self.shown = self.shown[visible]
         self.structure_version += 1
         self._built = self.structure_version, self.visibility_version
+
+    @property
+    def pose_version(self) -> int:
+        """Counts the updates that changed a skin or a morph target."""
+        poses = self.drawables.poses
+        return 0 if poses is None else poses.version
 
     def bounds(self) -> Array | None:
         """The world box (2, 3) of the visible models; None without any."""

@@ -61,7 +61,9 @@ PARTS_OF_SURFACE = {
     "instance.glsl",
     "lighting.glsl",
     "material.glsl",
+    "morph.glsl",
     "shading_normal.glsl",
+    "skin.glsl",
 }
 INCLUDES = sorted(
     {path.name for path in (shader_folder() / "include").glob("*.glsl")}

@@ -1,0 +1,218 @@
+"""The poses of a scene on the GPU: joint matrices and active morph targets.
+
+One texture, addressed by number, since it can hold what a uniform block
+cannot (16 KiB are 341 joints) and a vertex shader of OpenGL 3.3 reads it.
+Every skin and every morphed draw has its place for good, which instances
+name; a frame writes the rows of texels of what it shows and what has moved,
+in one call, and nothing where nothing has.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.command_list import CommandList
+from moka.commands.descriptors import (
+    Filter,
+    MipmapMode,
+    PixelFormat,
+    SamplerDescriptor,
+    TextureBinding,
+    TextureDescriptor,
+    Wrap,
+)
+from moka.commands.sort_key import SortKey
+from moka.core.errors import ModelError
+from moka.graphics.device import GraphicsDevice
+from moka.material.description import MaterialDescription
+from moka.model.mesh import Primitive
+from moka.renderer.geometry import GeometryPool
+from moka.renderer.morph_deltas import MorphDeltas, TargetPlaces
+from moka.renderer.scene_materials import SceneMaterials
+from moka.scene.morph_poses import MorphGroup
+from moka.scene.poses import Poses
+
+__all__ = ["POSE_ROW_BITS", "PoseTexture"]
+
+# Rows of 4 KiB: what one character writes is a few of them.
+POSE_ROW_BITS = 8
+_WIDTH = 1 << POSE_ROW_BITS
+
+# Texels are read one by one.
+_TEXELS = SamplerDescriptor(
+    Wrap.CLAMP_TO_EDGE,
+    Wrap.CLAMP_TO_EDGE,
+    Filter.NEAREST,
+    Filter.NEAREST,
+    MipmapMode.NONE,
+)
+
+
+class PoseTexture:
+    """What the vertex shader reads of ``poses``.
+
+    ``places`` uint32 (D, 2) are, for each draw, the first texel of its skin
+    and of its list of targets. Raises ModelError if a texture cannot hold
+    it all.
+    """
+
+    def __init__(
+        self,
+        device: GraphicsDevice,
+        poses: Poses,
+        primitives: Sequence[Primitive],
+        materials: SceneMaterials,
+    ) -> None:
+        self.made_for = materials
+        self._device = device
+        self._poses = poses
+        descriptions = dict(
+            zip(materials.drawn, materials.descriptions, strict=True)
+        )
+        self._meshes = {
+            index: (primitives[index], description.attributes)
+            for index, description in descriptions.items()
+        }
+        skins = poses.skins
+        self._groups: list[tuple[MorphGroup, TargetPlaces]] = []
+        self._deltas = self._find_deltas(device, descriptions)
+        self.places = np.zeros((len(poses.skin), 2), np.uint32)
+        self.places[:, 0] = 3 * np.append(skins.first, 0)[poses.skin]
+        joints = count = 3 * len(skins.rows)
+        for group, _ in self._groups:
+            size = 1 + len(group.targets)
+            ends = count + size * np.arange(1, len(group.draws) + 1)
+            self.places[group.draws, 1] = ends - size
+            count = int(ends[-1])
+        height = max(1, -(-count // _WIDTH))
+        if height > device.info.max_texture_size:
+            raise ModelError(
+                f"poses: {len(skins.rows)} joints and {count - joints} active "
+                "morph targets are more than this driver holds in a texture"
+            )
+        self._texels = np.zeros((height * _WIDTH, 4), np.float32)
+        self._joints = self._texels[:joints].reshape(-1, 3, 4)
+        self._written_skins = np.zeros(len(skins), np.int64)
+        self._written_draws = np.zeros(len(poses.skin), np.int64)
+        self.texture = device.create_texture(
+            TextureDescriptor(
+                PixelFormat.RGBA32F, _WIDTH, height, label="poses"
+            )
+        )
+
+    @property
+    def bindings(self) -> tuple[TextureBinding, ...]:
+        """The textures as the shader names them."""
+        poses = TextureBinding("poses", self.texture, _TEXELS)
+        if self._deltas is None:
+            return (poses,)
+        texture = self._deltas.texture
+        return (poses, TextureBinding("morph_deltas", texture, _TEXELS))
+
+    def destroy(self) -> None:
+        """Free the textures."""
+        self._device.destroy(self.texture)
+        if self._deltas is not None:
+            self._deltas.destroy()
+
+    def update(
+        self,
+        visible: NDArray[np.intp],
+        geometry: GeometryPool,
+        commands: CommandList,
+    ) -> None:
+        """Write what of the draws ``visible`` (V,) is not there yet.
+
+        Recorded before all passes. ``geometry`` holds their meshes.
+        """
+        seen = np.zeros(len(self._poses.skin), np.bool_)
+        seen[visible] = True
+        rows = self._write_skins(visible)
+        for group, places in self._groups:
+            rows += self._write_lists(group, places, seen, geometry)
+        if rows:
+            first, last = min(rows), max(rows) + 1
+            commands.fill_texture(
+                self.texture,
+                self._texels.reshape(-1, _WIDTH, 4)[first:last],
+                first,
+                key=SortKey(0),
+            )
+
+    def _write_skins(self, visible: NDArray[np.intp]) -> list[int]:
+        """The first and last row of texels that skins changed, if any."""
+        skins = self._poses.skins
+        stale = np.zeros(len(skins) + 1, np.bool_)
+        stale[self._poses.skin[visible]] = True
+        stale = stale[:-1] & (self._written_skins != skins.version)
+        if not stale.any():
+            return []
+        self._written_skins[stale] = skins.version[stale]
+        joints = np.flatnonzero(stale[skins.skin_of_joint])
+        # What float32 cannot hold is infinite, and not drawn.
+        with np.errstate(over="ignore"):
+            self._joints[joints] = skins.matrices[joints]
+        return [
+            3 * int(joints[0]) // _WIDTH,
+            (3 * int(joints[-1]) + 2) // _WIDTH,
+        ]
+
+    def _write_lists(
+        self,
+        group: MorphGroup,
+        places: TargetPlaces,
+        seen: NDArray[np.bool_],
+        geometry: GeometryPool,
+    ) -> list[int]:
+        """The first and last row of texels that lists changed, if any."""
+        version = self._poses.morphs.version
+        draws = group.draws
+        stale = np.flatnonzero(
+            seen[draws] & (self._written_draws[draws] != version[draws])
+        )
+        if not len(stale):
+            return []
+        draws = draws[stale]
+        self._written_draws[draws] = version[draws]
+        weights = self._poses.morphs.values[group.places[stale]]
+        active = (weights != 0) & places.shows
+        first = self.places[draws, 1].astype(np.intp)
+        count = active.sum(axis=1)
+        begin = geometry.base_vertex(*self._meshes[group.primitive])
+        heads = self._texels[first]
+        heads[:, 0] = count
+        heads[:, 1:3] = divmod(begin, 4096)
+        self._texels[first] = heads
+        row, target = np.nonzero(active)
+        texel = first[row] + np.cumsum(active, axis=1)[row, target]
+        self._texels[texel, 0] = weights[row, target]
+        self._texels[texel, 1:] = places.entries[target]
+        return [
+            int(first.min()) // _WIDTH,
+            int((first + count).max()) // _WIDTH,
+        ]
+
+    def _find_deltas(
+        self,
+        device: GraphicsDevice,
+        descriptions: Mapping[int, MaterialDescription],
+    ) -> MorphDeltas | None:
+        """The deltas that are read; sets the groups that read them."""
+        groups = [
+            group
+            for group in self._poses.morphs.groups
+            if group.primitive in descriptions
+            and descriptions[group.primitive].morphed
+        ]
+        if not groups:
+            return None
+        deltas = MorphDeltas(
+            device,
+            [
+                (group.targets, descriptions[group.primitive].morphed)
+                for group in groups
+            ],
+        )
+        self._groups = list(zip(groups, deltas.places, strict=True))
+        return deltas
