@@ -169,6 +169,18 @@ _INTERNAL = {
     PixelFormat.R32UI: 0x8236,
     PixelFormat.DEPTH24: 0x81A6,
     PixelFormat.DEPTH32F: 0x8CAC,
+    PixelFormat.BC1: 0x83F0,
+    PixelFormat.BC1_SRGB: 0x8C4C,
+    PixelFormat.BC3: 0x83F3,
+    PixelFormat.BC3_SRGB: 0x8C4F,
+    PixelFormat.BC7: 0x8E8C,
+    PixelFormat.BC7_SRGB: 0x8E8D,
+    PixelFormat.ETC2_RGB: 0x9274,
+    PixelFormat.ETC2_RGB_SRGB: 0x9275,
+    PixelFormat.ETC2_RGBA: 0x9278,
+    PixelFormat.ETC2_RGBA_SRGB: 0x9279,
+    PixelFormat.ASTC_4X4: 0x93B0,
+    PixelFormat.ASTC_4X4_SRGB: 0x93D0,
 }
 
 

@@ -125,7 +125,7 @@ class GlTexture:
         internal, layout, kind = c.pixel_format(descriptor.format)
         images: list[NDArray[Any] | None] = [None] * faces
         if texels is not None:
-            shape = (height, width, descriptor.format.channels)
+            shape = descriptor.level_shape(level)
             texels = np.ascontiguousarray(texels, descriptor.format.dtype)
             if texels.size != faces * np.prod(shape):
                 raise DeviceError(
@@ -134,6 +134,9 @@ class GlTexture:
                 )
             images = list(texels.reshape(faces, *shape))
         for face, image in enumerate(images):
+            if descriptor.format.block_bytes:
+                self._define_blocks(level, face, image)
+                continue
             self._gl.TexImage2D(
                 self._image_target(face),
                 level,
@@ -145,6 +148,27 @@ class GlTexture:
                 kind,
                 None if image is None else image.ctypes.data,
             )
+
+    def _define_blocks(
+        self, level: int, face: int, blocks: NDArray[Any] | None
+    ) -> None:
+        descriptor = self.descriptor
+        if blocks is None:
+            raise DeviceError(
+                f"texture {descriptor.label or self.name}: "
+                f"{descriptor.format.value} needs the data of level {level}"
+            )
+        width, height = descriptor.level_size(level)
+        self._gl.CompressedTexImage2D(
+            self._image_target(face),
+            level,
+            c.pixel_format(descriptor.format)[0],
+            width,
+            height,
+            0,
+            blocks.nbytes,
+            blocks.ctypes.data,
+        )
 
     def _image_target(self, face: int) -> int:
         if self.target == c.TEXTURE_CUBE_MAP:

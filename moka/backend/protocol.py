@@ -16,6 +16,7 @@ from moka.commands.descriptors import (
     BufferDescriptor,
     FramebufferDescriptor,
     MeshDescriptor,
+    PixelFormat,
     ProgramDescriptor,
     TextureDescriptor,
 )
@@ -29,7 +30,10 @@ TextureData = Sequence[NDArray[Any]]
 
 
 class BackendInfo(Struct, frozen=True):
-    """Facts about the driver that layers above may act on."""
+    """Facts about the driver that layers above may act on.
+
+    ``compressed_formats`` are those of blocks that it samples at no loss.
+    """
 
     kind: str
     vendor: str = ""
@@ -42,6 +46,7 @@ class BackendInfo(Struct, frozen=True):
     max_texture_units: int = 16
     clip_control: bool = False
     multi_draw_indirect: bool = False
+    compressed_formats: frozenset[PixelFormat] = frozenset()
 
 
 class FrameCounters(Struct):

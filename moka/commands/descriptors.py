@@ -57,7 +57,10 @@ class BufferDescriptor(Struct, frozen=True):
 
 
 class PixelFormat(Enum):
-    """Texel formats: channels, bits, encoding (F float, UI unsigned)."""
+    """Texel formats: channels, bits, encoding (F float, UI unsigned).
+
+    BC1 to ASTC are blocks of 4 x 4 texels, which no shader draws into.
+    """
 
     R8 = "r8"
     RG8 = "rg8"
@@ -80,6 +83,18 @@ class PixelFormat(Enum):
     R32UI = "r32ui"
     DEPTH24 = "depth24"
     DEPTH32F = "depth32f"
+    BC1 = "bc1"
+    BC1_SRGB = "bc1_srgb"
+    BC3 = "bc3"
+    BC3_SRGB = "bc3_srgb"
+    BC7 = "bc7"
+    BC7_SRGB = "bc7_srgb"
+    ETC2_RGB = "etc2_rgb"
+    ETC2_RGB_SRGB = "etc2_rgb_srgb"
+    ETC2_RGBA = "etc2_rgba"
+    ETC2_RGBA_SRGB = "etc2_rgba_srgb"
+    ASTC_4X4 = "astc_4x4"
+    ASTC_4X4_SRGB = "astc_4x4_srgb"
 
     @property
     def is_depth(self) -> bool:
@@ -87,10 +102,20 @@ class PixelFormat(Enum):
         return self in (PixelFormat.DEPTH24, PixelFormat.DEPTH32F)
 
     @property
+    def block_bytes(self) -> int:
+        """Bytes of a block of 4 x 4 texels, 0 for formats without."""
+        name = self.value
+        if name.startswith(("bc1", "etc2_rgb_")) or name == "etc2_rgb":
+            return 8
+        return 16 if name.startswith(("bc", "etc2", "astc")) else 0
+
+    @property
     def channels(self) -> int:
         """Channels per texel, 1 to 4."""
         if self.is_depth:
             return 1
+        if self.block_bytes:
+            return 3 if self.block_bytes == 8 else 4
         if self is PixelFormat.SRGB8_ALPHA8:
             return 4
         return len(self.value.removeprefix("s").rstrip("0123456789fui"))
@@ -138,6 +163,17 @@ class TextureDescriptor(Struct, frozen=True):
     def level_size(self, level: int) -> tuple[int, int]:
         """Width and height of mip level ``level``."""
         return max(1, self.width >> level), max(1, self.height >> level)
+
+    def level_shape(self, level: int) -> tuple[int, int, int]:
+        """Shape of a level's data: rows, columns, channels of texels.
+
+        For formats of blocks these are rows and columns of blocks, and the
+        bytes of each.
+        """
+        width, height = self.level_size(level)
+        if self.format.block_bytes:
+            return -(-height // 4), -(-width // 4), self.format.block_bytes
+        return height, width, self.format.channels
 
 
 class Wrap(Enum):

@@ -1,8 +1,9 @@
 """Decodes images to arrays of texels, in any thread.
 
-glTF 2.0 allows PNG and JPEG (3.8.3), extensions bring WebP and AVIF. It says
-that embedded colour profiles are ignored, and leaves the rest to what image
-libraries agree on. Pillow releases the interpreter's lock while it decodes.
+glTF 2.0 allows PNG and JPEG (3.8.3), extensions bring WebP, AVIF and KTX2.
+It says that embedded colour profiles are ignored, and leaves the rest to what
+image libraries agree on. They release the interpreter's lock while they
+decode.
 """
 
 import io
@@ -47,6 +48,10 @@ def decode_image(image: EncodedImage) -> NDArray[Any]:
     truncated or larger than 2^27 pixels.
     """
     data = image.read()
+    if media_type(data) == "image/ktx2":
+        from moka.core.ktx2 import open_ktx2
+
+        return open_ktx2(data, image.where).level("rgba8", 0)
     try:
         with _open(data) as file:
             width, height = file.size

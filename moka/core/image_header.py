@@ -10,7 +10,12 @@ from typing import TypeVar
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
 
-__all__ = ["has_deep_texels", "media_type", "pixel_size"]
+__all__ = [
+    "has_deep_texels",
+    "image_media_type",
+    "media_type",
+    "pixel_size",
+]
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _JPEG = b"\xff\xd8\xff"
@@ -34,6 +39,11 @@ def media_type(data: bytes | memoryview) -> str | None:
     from moka.core.extension_headers import extension_media_type
 
     return extension_media_type(head)
+
+
+def image_media_type(image: EncodedImage) -> str | None:
+    """:func:`media_type` of an image, of which no more than that is read."""
+    return _ask(image, lambda read: media_type(read(0, 32)))
 
 
 def pixel_size(image: EncodedImage) -> tuple[int, int] | None:

@@ -15,8 +15,13 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from moka.commands.descriptors import Topology
+from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ModelError
-from moka.core.image_header import has_deep_texels, pixel_size
+from moka.core.image_header import (
+    has_deep_texels,
+    image_media_type,
+    pixel_size,
+)
 from moka.material.material import AlphaMode, Material, Texture
 
 __all__ = [
@@ -293,7 +298,7 @@ def _is_carried(first: Texture, second: Texture) -> bool:
         first.sampler == second.sampler
         and first.uv_set == second.uv_set
         and first.transform is None is second.transform
-        and pixel_size(first.image) == pixel_size(second.image) is not None
+        and _can_be_joined(first.image, second.image)
         and not has_deep_texels(first.image)
         and not has_deep_texels(second.image)
     )
@@ -312,6 +317,16 @@ def _shares_sample(first: Texture | None, second: Texture | None) -> bool:
         and first.transform == second.transform
         and (
             first.image.identity == second.image.identity
-            or pixel_size(first.image) == pixel_size(second.image) is not None
+            or _can_be_joined(first.image, second.image)
         )
+    )
+
+
+def _can_be_joined(first: EncodedImage, second: EncodedImage) -> bool:
+    """Whether channels of both can stand in one texture.
+
+    KTX2 images stay alone, since they keep their blocks and their levels.
+    """
+    return pixel_size(first) == pixel_size(second) is not None and (
+        "image/ktx2" not in (image_media_type(first), image_media_type(second))
     )

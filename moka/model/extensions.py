@@ -19,6 +19,7 @@ SUPPORTED_EXTENSIONS: dict[str, str] = {
     "KHR_mesh_quantization": "vertex attributes of 8 and 16 bits",
     "KHR_meshopt_compression": "the same, with a filter for colours",
     "KHR_node_visibility": "nodes hidden with all below them",
+    "KHR_texture_basisu": "KTX2 images, ETC1S and UASTC",
     "KHR_texture_transform": "offset, rotation and scale of textures",
     "MSFT_lod": "levels of detail of nodes and materials",
 }

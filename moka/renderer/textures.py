@@ -22,6 +22,7 @@ from moka.commands.descriptors import (
 )
 from moka.commands.handles import Handle
 from moka.core.encoded_image import EncodedImage
+from moka.core.image_header import image_media_type
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.material.material import Texture
@@ -144,6 +145,19 @@ class TexturePool:
         read: SampledLevels | None,
     ) -> Handle:
         from moka.core.mip_levels import reduce_levels
+
+        if (
+            len(decoders) == 1
+            and image_media_type(decoders[0].image) == "image/ktx2"
+        ):
+            from moka.renderer.basis_textures import transcode
+
+            with self._statistics.stage("decode"):
+                texture = transcode(
+                    decoders[0].image, self._device.info, request, read
+                )
+            if texture is not None:
+                return self._device.create_texture(*texture)
 
         with self._statistics.stage("decode"):
             texels, *others = (decoder.texels() for decoder in decoders)

@@ -21,7 +21,7 @@ pytestmark = [pytest.mark.gpu, pytest.mark.assets]
         (with_meshopt, 1e-6, 0.0),
         # Vertices move by less than 1 / 16384 of the model: some samples
         # along edges and highlights fall to the other side.
-        (with_draco, 0.003, 0.01),
+        (with_draco, 0.0003, 0.001),
     ],
 )
 def test_the_picture_is_that_of_the_original(
