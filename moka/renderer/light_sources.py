@@ -33,6 +33,7 @@ __all__ = ["LightSources", "light_capacity"]
 
 # 16 KiB of uniform block hold this many.
 MOST_LIGHTS = 256
+# Above the one light that shaders have a case for.
 _SMALLEST_CAPACITY = 4
 
 
@@ -192,8 +193,8 @@ def light_capacity(count: int) -> int:
 
     A power of two, so that a light more or less seldom changes shaders.
     """
-    if not count:
-        return 0
+    if count < 2:
+        return count
     return max(_SMALLEST_CAPACITY, 1 << math.ceil(math.log2(count)))
 
 

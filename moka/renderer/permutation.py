@@ -85,7 +85,8 @@ class LightingDescription(Struct, frozen=True):
 
     With ``harmonics`` irradiance comes from nine coefficients, not a cube.
     ``light_capacity`` is 0 without punctual lights, else the power of two
-    that holds them. ``ibl`` is how the environment lights. What the target
+    that holds them; ``positional`` tells whether some are anywhere but in
+    infinity. ``ibl`` is how the environment lights. What the target
     wants stands here too: ``float_target``, ``logarithmic_depth``, and the
     groups of ``values`` that are drawn in the place of radiance, which
     :mod:`moka.renderer.surface_values` names.
@@ -100,6 +101,7 @@ class LightingDescription(Struct, frozen=True):
     harmonics: bool = False
     ibl: str = "split-sum"
     logarithmic_depth: bool = False
+    positional: bool = True
     values: tuple[str, ...] = ()
 
     def defines(self, features: Feature) -> dict[str, int]:
@@ -131,7 +133,9 @@ class LightingDescription(Struct, frozen=True):
                 if self.harmonics:
                     defines["MOKA_IRRADIANCE_SH"] = 1
         if self.light_capacity:
-            defines["MOKA_PUNCTUAL_LIGHTS"] = 1
+            defines["MOKA_PUNCTUAL_LIGHTS"] = self.light_capacity
+            if self.positional:
+                defines["MOKA_POSITIONAL_LIGHTS"] = 1
         if self.multiscatter:
             defines["MOKA_MULTISCATTER"] = 1
         if self.needs_table:

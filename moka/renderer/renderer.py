@@ -157,6 +157,7 @@ class Renderer:
             scene,
             materials,
             capacity,
+            positional=bool(lights["positional"].any()),
             logarithmic_depth=view.depth_range is not None,
         )
         visible = np.flatnonzero(scene.visible(camera, width / height))
@@ -343,6 +344,7 @@ class Renderer:
         materials: SceneMaterials,
         capacity: int,
         *,
+        positional: bool,
         logarithmic_depth: bool,
     ) -> PreparedScene:
         settings = self.settings
@@ -360,6 +362,7 @@ class Renderer:
             if settings.ibl == "filtered" and maps.radiance is None
             else settings.ibl,
             logarithmic_depth,
+            positional,
         )
         key = (self._materials.key, lighting)
         if self._prepared is not None and self._prepared_key == key:

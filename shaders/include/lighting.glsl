@@ -175,70 +175,83 @@ float distance_attenuation(float squared_distance, float inverse_range) {
     return window / max(squared_distance, 1e-8);
 }
 
-// With energy compensation a light is reflected as the same light in an
-// environment map would be, and never more than all of it. Without, it is
-// glTF 2.0's appendix B to the letter, whose diffuse term (1 - F(v.h))
-// lets base and interface together return up to 1.9 at grazing angles.
+// One light. With energy compensation, where ``base`` is base_share, it is
+// reflected as the same light in an environment map would be, and never more
+// than all of it. Without, it is glTF 2.0's appendix B to the letter, whose
+// diffuse term (1 - F(v.h)) lets base and interface together return up to
+// 1.9 at grazing angles. ``scale`` is multiscatter_scale.
+vec3 reflected_light(
+    LightsRow light, Surface surface, float base, vec3 scale
+) {
+    bool is_sun = light.angular_radius > 0.0;
+#ifdef MOKA_IBL_REFERENCE
+    // Sampled with the environment that it is part of.
+    if (is_sun) return vec3(0.0);
+#endif
+    vec3 towards = -light.direction;
+    float attenuation = 1.0;
+#ifdef MOKA_POSITIONAL_LIGHTS
+    if (light.positional != 0.0) {
+        towards = light.position - surface_position;
+        // The square of a distance beyond 1e19 m is infinite.
+        float squared = min(dot(towards, towards), 1e38);
+        towards = direction_of(towards);
+        float cone = dot(-towards, light.direction);
+        float spot = clamp(
+            cone * light.angle_scale + light.angle_offset, 0.0, 1.0);
+        attenuation =
+            spot * spot * distance_attenuation(squared, light.inverse_range);
+    }
+#endif
+    Angles angles = angles_between(surface.normal, surface.view, towards);
+    if (angles.n_dot_l <= 0.0 || attenuation <= 0.0) return vec3(0.0);
+    vec3 fresnel = fresnel_schlick(angles.v_dot_h, surface.f0, surface.f90);
+#ifdef MOKA_MULTISCATTER
+    vec3 share = vec3(base);
+#else
+    vec3 share = 1.0 - fresnel;
+#endif
+    float lobe;
+    if (is_sun) {
+        vec3 offset = towards - reflect(-surface.view, surface.normal);
+        lobe = specular_lobe_of_disc(
+            angles, dot(offset, offset), surface.roughness,
+            light.angular_radius);
+        if (light.in_map != 0.0) lobe *= sun_weight(surface.roughness);
+        // Occluded like the rest of the environment that it is part of.
+        attenuation *= surface.occlusion;
+    } else {
+        lobe = specular_lobe(
+            angles, alpha_from_roughness(surface.roughness),
+            schlick_k_direct(surface.roughness));
+    }
+    vec3 reflected = fresnel * scale * lobe
+        + share * diffuse_brdf(
+            angles, surface.diffuse_colour, surface.roughness);
+    vec3 arriving = min(
+        light.intensity * (angles.n_dot_l * attenuation), LIGHT_MAXIMUM);
+    return reflected * arriving;
+}
+
+// All lights: MOKA_PUNCTUAL_LIGHTS is how many there can be. The one sun that
+// most environments have needs no loop, and no reads that depend on one.
 vec3 punctual_light(Surface surface) {
 #ifdef MOKA_MULTISCATTER
     float base = base_share(
         surface, clamp_n_dot_v(dot(surface.normal, surface.view)));
+#else
+    float base = 0.0;
 #endif
     vec3 scale = multiscatter_scale(surface.f0, surface.table);
-    float k = schlick_k_direct(surface.roughness);
-    vec3 mirrored = reflect(-surface.view, surface.normal);
+#if MOKA_PUNCTUAL_LIGHTS == 1
+    return reflected_light(lights[0], surface, base, scale);
+#else
     vec3 sum = vec3(0.0);
     for (int i = 0; i < light_count; ++i) {
-        LightsRow light = lights[i];
-        bool is_sun = light.angular_radius > 0.0;
-#ifdef MOKA_IBL_REFERENCE
-        // Sampled with the environment that it is part of.
-        if (is_sun) continue;
-#endif
-        vec3 towards = -light.direction;
-        float attenuation = 1.0;
-        if (light.positional != 0.0) {
-            towards = light.position - surface_position;
-            // The square of a distance beyond 1e19 m is infinite.
-            float squared = min(dot(towards, towards), 1e38);
-            towards = direction_of(towards);
-            float cone = dot(-towards, light.direction);
-            float spot = clamp(
-                cone * light.angle_scale + light.angle_offset, 0.0, 1.0);
-            attenuation = spot * spot
-                * distance_attenuation(squared, light.inverse_range);
-        }
-        Angles angles =
-            angles_between(surface.normal, surface.view, towards);
-        if (angles.n_dot_l <= 0.0 || attenuation <= 0.0) continue;
-        vec3 fresnel =
-            fresnel_schlick(angles.v_dot_h, surface.f0, surface.f90);
-#ifdef MOKA_MULTISCATTER
-        vec3 share = vec3(base);
-#else
-        vec3 share = 1.0 - fresnel;
-#endif
-        float lobe;
-        if (is_sun) {
-            vec3 offset = towards - mirrored;
-            lobe = specular_lobe_of_disc(
-                angles, dot(offset, offset), surface.roughness,
-                light.angular_radius);
-            if (light.in_map != 0.0) lobe *= sun_weight(surface.roughness);
-            // Occluded like the rest of the environment that it is part of.
-            attenuation *= surface.occlusion;
-        } else {
-            lobe = specular_lobe(
-                angles, alpha_from_roughness(surface.roughness), k);
-        }
-        vec3 reflected = fresnel * scale * lobe
-            + share * diffuse_brdf(
-                angles, surface.diffuse_colour, surface.roughness);
-        vec3 arriving = min(
-            light.intensity * (angles.n_dot_l * attenuation), LIGHT_MAXIMUM);
-        sum += reflected * arriving;
+        sum += reflected_light(lights[i], surface, base, scale);
     }
     return sum;
+#endif
 }
 
 #endif
