@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from moka.app.application import App as App
     from moka.app.application import GameTime as GameTime
     from moka.app.render import render as render
+    from moka.app.render_frames import render_frames as render_frames
     from moka.app.run import run as run
     from moka.commands.command_list import CommandList as CommandList
     from moka.core.errors import CommandError as CommandError
@@ -70,6 +71,7 @@ __all__ = [
     "load_environment",
     "load_model",
     "render",
+    "render_frames",
     "run",
     "save_model",
 ]
@@ -100,6 +102,7 @@ _HOMES = {
     "load_environment": "moka.lighting.environment",
     "load_model": "moka.model",
     "render": "moka.app.render",
+    "render_frames": "moka.app.render_frames",
     "run": "moka.app.run",
     "save_model": "moka.model",
 }

@@ -10,11 +10,13 @@ from moka.core.errors import OptionError
 from moka.core.option_text import count, name_or_index, number, size
 
 if TYPE_CHECKING:
-    from moka.app.render import RenderRequest
+    from moka.app.render_session import RenderRequest
 
 __all__ = ["add_arguments", "execute"]
 
 SUFFIXES = (".png", ".exr")
+# Each of them is a sequence.
+MOVING_SUFFIXES = (".gif", ".webp", ".mp4")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -189,6 +191,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="write half floats into .exr files",
     )
     add(
+        "--frames",
+        metavar="N",
+        type=count,
+        help="a sequence of N pictures, OUT.0000.png and so on, or one .gif, "
+        ".webp or .mp4 (default: one run of the animation)",
+    )
+    add(
+        "--turntable",
+        action="store_true",
+        help="in a sequence the camera goes once around the scene",
+    )
+    add(
+        "--fps",
+        metavar="N",
+        type=number,
+        help="frames per second of a sequence (default: 30)",
+    )
+    add(
+        "--resume",
+        action="store_true",
+        help="leave out the frames of a sequence that are there already",
+    )
+    add(
         "--aov",
         metavar="NAME,...",
         default=(),
@@ -224,12 +249,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Render and write every output, or write none and raise MokaError."""
     outputs = arguments.output or [Path("moka.png")]
-    _check_outputs(outputs, arguments.stats)
+    is_sequence = (
+        arguments.frames is not None
+        or arguments.turntable
+        or any(path.suffix.lower() in MOVING_SUFFIXES for path in outputs)
+    )
+    _check_outputs(
+        outputs, arguments.stats, SUFFIXES + is_sequence * MOVING_SUFFIXES
+    )
     if arguments.owns_process:
         from moka.core.heap import claim_heap
 
         claim_heap()
     request = _request(arguments, outputs)
+    if is_sequence:
+        from moka.cli.render_sequence import render_sequence
+
+        return render_sequence(arguments, request, outputs)
+    for option in ("fps", "resume"):
+        if getattr(arguments, option):
+            raise OptionError(f"--{option}: needs --frames or --turntable")
 
     from moka.app.render import render_request
     from moka.core.image import Image
@@ -260,7 +299,7 @@ def execute(arguments: argparse.Namespace) -> int:
 def _request(
     arguments: argparse.Namespace, outputs: list[Path]
 ) -> "RenderRequest":
-    from moka.app.render import RenderRequest
+    from moka.app.render_session import RenderRequest
     from moka.renderer.quality import settings_of_quality
 
     if arguments.environment_intensity < 0:
@@ -322,12 +361,15 @@ def _check_lighting(arguments: argparse.Namespace, ibl: str) -> None:
                 )
 
 
-def _check_outputs(outputs: list[Path], statistics: Path | None) -> None:
+def _check_outputs(
+    outputs: list[Path], statistics: Path | None, suffixes: tuple[str, ...]
+) -> None:
     """Find out that a file cannot be written before the work is done."""
     for path in outputs:
-        if path.suffix.lower() not in SUFFIXES:
+        if path.suffix.lower() not in suffixes:
             raise OptionError(
-                f"{path}: the output needs the ending .png or .exr"
+                f"{path}: the output needs the ending "
+                f"{', '.join(suffixes[:-1])} or {suffixes[-1]}"
             )
     for path in [*outputs, *([statistics] if statistics else [])]:
         if not path.parent.is_dir():

@@ -1,15 +1,14 @@
 """Arbitrary output variables: what a picture can tell besides its colour."""
 
 from collections.abc import Iterable
-
-from msgspec import Struct
+from typing import NamedTuple
 
 from moka.core.errors import OptionError
 
 __all__ = ["AOVS", "Aov", "exr_layer", "parse_aovs"]
 
 
-class Aov(Struct, frozen=True):
+class Aov(NamedTuple):
     """One of them: ``letters`` are its channels in an EXR file, if several.
 
     ``dtype`` is NumPy's name of its type, ``nothing`` its value where no

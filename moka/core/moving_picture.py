@@ -116,15 +116,17 @@ def _save_with_pillow(
     **options: object,
 ) -> None:
     first = next(pictures)
-    first.save(
-        path,
-        kind,
-        save_all=True,
-        append_images=pictures,
-        duration=1000.0 / rate,
-        loop=0,
-        **options,
-    )
+    # Pillow leaves a file that it has opened open after an interruption.
+    with path.open("w+b") as file:
+        first.save(
+            file,
+            kind,
+            save_all=True,
+            append_images=pictures,
+            duration=1000.0 / rate,
+            loop=0,
+            **options,
+        )
 
 
 def _with_palette(frame: Pixels) -> "PIL.Image.Image":

@@ -21,7 +21,7 @@ class Progress:
         self, what: str, total: int, stream: TextIO | None = None
     ) -> None:
         self._what = what
-        self._total = total
+        self.total = total
         self._stream = stream or sys.stderr
         self._is_shown = self._stream.isatty()
         self._started = time.monotonic()
@@ -49,8 +49,8 @@ class Progress:
 
     def _line(self, now: float) -> str:
         rate = self.done / max(now - self._started, 1e-9)
-        left = round((self._total - self.done) / max(rate, 1e-9))
+        left = round((self.total - self.done) / max(rate, 1e-9))
         return (
-            f"{self._what} {self.done}/{self._total}  {rate:.1f} per second  "
+            f"{self._what} {self.done}/{self.total}  {rate:.1f} per second  "
             f"{left // 60}:{left % 60:02} left"
         )

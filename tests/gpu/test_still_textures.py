@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import moka
-from moka.app.render import RenderRequest, render_request
+from moka.app.render import render_request
+from moka.app.render_session import RenderRequest
 from moka.commands.command_list import CommandList
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError

@@ -1,0 +1,384 @@
+"""What pictures of one request are made with, while they are made.
+
+Reading the environment and decoding images run in worker threads while the
+render thread makes the context and compiles; they meet at the first frame.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.core.aov import parse_aovs
+from moka.core.errors import OptionError
+from moka.core.image import Image
+from moka.core.option_text import LARGEST_SIDE
+from moka.core.statistics import Statistics
+from moka.renderer.quality import settings_of_quality
+from moka.renderer.settings import RenderSettings
+
+if TYPE_CHECKING:
+    from moka.commands.commands import Readback
+    from moka.graphics.device import Frame, GraphicsDevice
+    from moka.lighting.environment import Environment
+    from moka.model.model import Model
+    from moka.renderer.renderer import Renderer
+    from moka.scene.camera import Camera
+    from moka.scene.scene import Scene
+    from moka.scene.scene_model import SceneModel
+
+__all__ = ["PendingImage", "RenderRequest", "RenderSession", "request_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class RenderRequest:
+    """All that decides a picture; the options of ``moka render``.
+
+    ``source`` is a path, the bytes of a file, a pygltflib document, a
+    :class:`moka.Model`, or None for the built-in scene. ``environment`` is a
+    path, a built-in name or a :class:`moka.Environment`.
+    ``environment_rotation`` is in radians about +Y. ``camera`` is what the
+    command line's ``--camera`` takes, or a :class:`moka.Camera`. ``aovs``
+    are names of :data:`moka.core.aov.AOVS`. ``full_textures`` keeps the
+    levels of textures that are too fine for the picture. ``animation`` is a
+    name or a position, None for the first one if there is any, ``time`` in
+    seconds. ``scene`` and ``variant`` are a name or an index in the file.
+    """
+
+    source: Any = None
+    environment: Any = "studio"
+    environment_rotation: float = 0.0
+    environment_intensity: float = 1.0
+    background: Any = "environment"
+    camera: Any = None
+    size: tuple[int, int] = (1280, 720)
+    settings: RenderSettings = field(default_factory=RenderSettings)
+    backend: str = "auto"
+    aovs: tuple[str, ...] = ()
+    full_textures: bool = False
+    time: float = 0.0
+    animation: str | int | None = None
+    scene: str | int | None = None
+    variant: str | int | None = None
+
+
+def request_of(
+    source: Any,
+    *,
+    quality: str = "balanced",
+    aov: str | Iterable[str] = (),
+    **options: Any,
+) -> RenderRequest:
+    """The request that the options of :func:`moka.render` make.
+
+    Raises OptionError for values that mean nothing, TypeError for options
+    that there are not.
+    """
+    names = {entry.name for entry in fields(RenderRequest)}
+    of_request = {name: options.pop(name) for name in names & options.keys()}
+    settings = settings_of_quality(quality, float_output=True, **options)
+    return RenderRequest(
+        source, settings=settings, aovs=parse_aovs(aov), **of_request
+    )
+
+
+class PendingImage:
+    """A picture that is being made; :meth:`wait` for it."""
+
+    def __init__(
+        self,
+        session: "RenderSession",
+        frame: "Frame",
+        radiance: "Readback | None",
+        display: "Readback | None",
+        values: "Mapping[str, Readback] | None",
+    ) -> None:
+        self._session = session
+        self._frame = frame
+        self._radiance = radiance
+        self._display = display
+        self._values = values
+
+    def wait(self) -> Image:
+        """The picture, when the GPU has made it; raises what it raised."""
+        self._session.count(self._frame)
+        request = self._session.request
+        return _image(request, self._radiance, self._display, self._values)
+
+
+class RenderSession:
+    """A scene with the model of a request, its camera, and what draws them.
+
+    ``request`` may not change. Made by :meth:`open`; then :meth:`pose`,
+    move the ``camera``, and :meth:`submit`, as often as needed.
+    """
+
+    def __init__(
+        self,
+        request: RenderRequest,
+        statistics: Statistics,
+        device: "GraphicsDevice",
+        renderer: "Renderer",
+        scene: "Scene",
+        model: "SceneModel",
+        camera: "Camera",
+    ) -> None:
+        self.request = request
+        self.scene = scene
+        self.model = model
+        self.camera = camera
+        self._statistics = statistics
+        self._device = device
+        self._renderer = renderer
+
+    @classmethod
+    @contextmanager
+    def open(
+        cls,
+        request: RenderRequest,
+        statistics: Statistics,
+        *,
+        debug: bool = False,
+        cache: bool = False,
+        moves: bool = False,
+    ) -> "Iterator[RenderSession]":
+        """Open a device and load what ``request`` names.
+
+        ``cache`` is whether preintegrated lighting comes from disk, ``moves``
+        whether there will be pictures from other places than the camera's.
+        Raises what :func:`moka.render` does.
+        """
+        _check_size(request.size)
+        # In this order: the context is made and the map is read by other
+        # threads while this one reads the model.
+        from moka.graphics.device import GraphicsDevice
+
+        with (
+            GraphicsDevice.open(request.backend, debug=debug) as device,
+            ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader,
+        ):
+            environment = reader.submit(
+                _load_environment, request, statistics, cache=cache
+            )
+            from moka.renderer.material_pool import MaterialPool
+
+            with statistics.stage("parse"):
+                scene, model, camera = _load_scene(request)
+                still = None if moves or request.full_textures else camera
+                if still is None:
+                    scene.update()
+                else:
+                    width, height = request.size
+                    scene.narrow(camera, width / height)
+            with closing(MaterialPool(device, statistics)) as materials:
+                materials.begin(scene, still, request.size)
+                # The images decode while this thread imports the rest.
+                from moka.lighting.disk_cache import DiskCache
+                from moka.renderer.renderer import Renderer
+
+                renderer = Renderer(
+                    device,
+                    request.size,
+                    request.settings,
+                    statistics=statistics,
+                    cache=DiskCache() if cache else None,
+                    materials=materials,
+                )
+                scene.environment = environment.result()
+                yield cls(
+                    request, statistics, device, renderer, scene, model, camera
+                )
+
+    def pose(self, time: float) -> None:
+        """Move the model to its pose at ``time`` seconds."""
+        _pose(self.model, self.request, time)
+
+    @property
+    def animation_duration(self) -> float:
+        """Seconds that the animation takes; 0 where nothing is animated."""
+        if not self.model.model.animations:
+            return 0.0
+        current = self.model.animations.current
+        return current.duration if current else 0.0
+
+    def submit(self, *, want_pixels: bool, want_display: bool) -> PendingImage:
+        """Begin a picture of the scene as it is now.
+
+        Only what is wanted is read back: linear ``pixels``, the tone mapped
+        ``display`` bytes, or both.
+        """
+        from moka.commands.command_list import CommandList
+
+        renderer, request = self._renderer, self.request
+        commands = CommandList()
+        renderer.draw(self.scene, self.camera, commands)
+        while not renderer.is_complete:
+            # What the GPU tells of the error comes with the frame.
+            self.count(self._device.submit(commands))
+            commands = CommandList()
+            renderer.draw(self.scene, self.camera, commands)
+        display = renderer.read_display(commands) if want_display else None
+        radiance = renderer.read_radiance(commands) if want_pixels else None
+        values = None
+        if request.aovs:
+            values = renderer.read_values(
+                self.scene, self.camera, request.aovs, commands
+            )
+        frame = self._device.submit(commands)
+        return PendingImage(self, frame, radiance, display, values)
+
+    def count(self, frame: "Frame") -> None:
+        """Wait for a frame and count its work in the statistics."""
+        counters = frame.wait()
+        for name in counters.__struct_fields__:
+            self._statistics.count(name, getattr(counters, name))
+
+    def report(self) -> None:
+        """Write into the statistics what is known when all is drawn."""
+        info, statistics = self._device.info, self._statistics
+        for stage, seconds in self._device.stage_seconds().items():
+            statistics.add_time(stage, seconds)
+        statistics.lighting.update(self._renderer.lighting_statistics)
+        statistics.gl.update(
+            backend=info.kind,
+            vendor=info.vendor,
+            renderer=info.renderer,
+            version=info.version,
+        )
+
+    def keep_lighting(self) -> None:
+        """Write preintegrated lighting that is new to the disk cache."""
+        if self._renderer.has_lighting_to_keep:
+            with self._statistics.stage("store"):
+                self._renderer.keep_lighting()
+
+
+def _image(
+    request: RenderRequest,
+    radiance: "Readback | None",
+    display: "Readback | None",
+    values: "Mapping[str, Readback] | None",
+) -> Image:
+    """What was read back, top row first."""
+    pixels = None
+    if radiance is not None:
+        assert radiance.data is not None
+        pixels = _over_background(radiance.data[::-1], request.background)
+    shown = None
+    if display is not None:
+        assert display.data is not None
+        shown = np.ascontiguousarray(display.data[::-1])
+    layers = None
+    if values is not None:
+        from moka.renderer.surface_values import unpack_values
+
+        layers = unpack_values(request.aovs, values)
+    return Image(
+        pixels,
+        tone_map=request.settings.tone_map,
+        exposure=request.settings.exposure,
+        display=shown,
+        layers=layers,
+    )
+
+
+def _load_scene(
+    request: RenderRequest,
+) -> "tuple[Scene, SceneModel, Camera]":
+    """The scene of a request, without its environment."""
+    from moka.scene.scene import Scene
+
+    scene = Scene()
+    scene.background = request.background
+    scene.environment_rotation = request.environment_rotation
+    scene.environment_intensity = request.environment_intensity
+    model = scene.add(
+        _load_model(request.source),
+        scene=request.scene,
+        variant=request.variant,
+    )
+    # An orbit frames the start, and so is the same at every time.
+    _pose(model, request, 0.0)
+    camera = _choose_camera(request, scene)
+    _pose(model, request, request.time)
+    return scene, model, camera
+
+
+def _load_model(source: Any) -> "Model":
+    from moka.model.model import Model
+
+    if isinstance(source, Model):
+        return source
+    from moka.model.load import load_model
+
+    if source is None:
+        from moka.core.resources import asset_folder
+
+        source = asset_folder() / "demo.glb"
+    return load_model(source)
+
+
+def _pose(model: "SceneModel", request: RenderRequest, time: float) -> None:
+    """Give the model the pose that is asked for; one that moves has one."""
+    if not math.isfinite(time):
+        raise OptionError("time: must be a finite number of seconds")
+    wanted = request.animation
+    if model.model.animations or wanted is not None:
+        model.animations.pose(0 if wanted is None else wanted, time)
+
+
+def _load_environment(
+    request: RenderRequest, statistics: Statistics, *, cache: bool
+) -> "Environment | None":
+    from moka.lighting.environment import Environment, load_environment
+
+    source = request.environment
+    if source is None or isinstance(source, Environment):
+        return source
+    with statistics.stage("decode"):
+        environment = load_environment(source)
+        if cache and environment is not None:
+            # By which the cache finds it; here nobody waits for it.
+            _ = environment.digest
+        return environment
+
+
+def _choose_camera(request: RenderRequest, scene: "Scene") -> "Camera":
+    from moka.scene.camera import Camera
+    from moka.scene.camera_choice import choose_camera, parse_camera
+
+    choice = request.camera
+    if isinstance(choice, Camera):
+        return choice
+    if isinstance(choice, str):
+        choice = parse_camera(choice)
+    width, height = request.size
+    return choose_camera(scene, choice, width / height)
+
+
+def _over_background(
+    pixels: NDArray[np.float32], background: Any
+) -> NDArray[np.float32]:
+    """Radiance over a background colour, as the display pass has it."""
+    if isinstance(background, str):
+        return np.ascontiguousarray(pixels)
+    under = np.append(np.asarray(background, np.float32), np.float32(1))
+    return pixels + under * (1 - pixels[:, :, 3:])
+
+
+def _check_size(size: tuple[int, int]) -> None:
+    if (
+        not all(
+            isinstance(side, int | np.integer) and 1 <= side <= LARGEST_SIDE
+            for side in size
+        )
+        or len(size) != 2
+    ):
+        raise OptionError(
+            f"size: {size!r} is not (width, height) from 1 to {LARGEST_SIDE}"
+        )
