@@ -14,20 +14,21 @@ from numpy.typing import NDArray
 
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
+from moka.core.exif import exif_of_jpeg, orientation_of, turn_upright
 from moka.core.image_header import media_type
+from moka.core.jpeg import decode_common_jpeg
+from moka.core.pillow_texels import pillow_texels
 
 if TYPE_CHECKING:
     from PIL.ImageFile import ImageFile
 
-__all__ = ["decode_image"]
+__all__ = ["decode_image", "with_alpha"]
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _JPEG = b"\xff\xd8\xff"
 
 #: More pixels than 16384 x 8192 are taken for a decompression bomb.
 _MOST_PIXELS = 1 << 27
-
-_ORIENTATION_TAG = 0x0112
 
 #: How Pillow reads colours of 16 bits, and how it reads their lower half.
 _DEEP_MODES = {"RGB;16B": "RGB;16L", "RGBA;16B": "RGBA;16L"}
@@ -43,8 +44,9 @@ def decode_image(image: EncodedImage) -> NDArray[Any]:
     RGBA where they or a colour key (tRNS) make something transparent; CMYK
     becomes RGB. 16 bits are kept for grey, RGB and RGBA; grey and alpha of
     16 bits become RGBA of 8. An EXIF orientation is applied, as browsers
-    do. The values stay encoded as they are in the file. Raises
-    ImageFileError, which names ``image.where``, for anything broken,
+    do. The values stay encoded as they are in the file. RGB of 8 bits may be
+    a view of four channels, whose last is 255; see :func:`with_alpha`.
+    Raises ImageFileError, which names ``image.where``, for anything broken,
     truncated or larger than 2^27 pixels.
     """
     data = image.read()
@@ -52,6 +54,10 @@ def decode_image(image: EncodedImage) -> NDArray[Any]:
         from moka.core.ktx2 import open_ktx2
 
         return open_ktx2(data, image.where).level("rgba8", 0)
+    if bytes(data[: len(_JPEG)]) == _JPEG:
+        common = decode_common_jpeg(data, _MOST_PIXELS)
+        if common is not None:
+            return turn_upright(common, orientation_of(exif_of_jpeg(data)))
     try:
         with _open(data) as file:
             width, height = file.size
@@ -67,7 +73,28 @@ def decode_image(image: EncodedImage) -> NDArray[Any]:
         ) from error
     if texels.ndim == 2:
         texels = texels[:, :, np.newaxis]
-    return _orient(texels, _orientation(exif))
+    return turn_upright(texels, orientation_of(exif))
+
+
+def with_alpha(texels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """RGB (H, W, 3) with an alpha of 255: (H, W, 4).
+
+    Nothing is copied of what :func:`decode_image` returned as a view.
+    """
+    height, width, _ = texels.shape
+    given = texels.base
+    if (
+        isinstance(given, np.ndarray)
+        and given.shape == (height, width, 4)
+        and given.strides == (4 * width, 4, 1) == texels.strides
+        and given.ctypes.data == texels.ctypes.data
+    ):
+        return given
+    padded = np.full((height, width, 4), 255, np.uint8)
+    for channel in range(3):
+        # Four times as fast as all three at once.
+        padded[:, :, channel] = texels[:, :, channel]
+    return padded
 
 
 def _open(data: bytes | memoryview) -> "ImageFile":
@@ -100,10 +127,10 @@ def _texels(file: "ImageFile") -> NDArray[Any]:
     if "transparency" in file.info:
         mode = "LA" if file.mode in ("1", "L") else "RGBA"
     elif file.mode in _PLAIN_MODES:
-        return np.asarray(file)
+        return pillow_texels(file)
     else:
         mode = "L" if file.mode == "1" else "RGB"
-    return np.asarray(file.convert(mode))
+    return pillow_texels(file.convert(mode))
 
 
 def _deep_texels(file: "ImageFile", data: bytes | memoryview) -> NDArray[Any]:
@@ -122,39 +149,3 @@ def _deep_texels(file: "ImageFile", data: bytes | memoryview) -> NDArray[Any]:
     texels <<= 8
     texels |= lower
     return texels
-
-
-def _orientation(exif: bytes) -> int:
-    """The orientation 1 to 8 of EXIF data, 1 where it says nothing.
-
-    EXIF 2.32, 4.6.4 A: a TIFF header and a directory of entries of 12 bytes.
-    """
-    tiff = exif.removeprefix(b"Exif\0\0")
-    order = {b"II": "little", b"MM": "big"}.get(tiff[:2])
-    if order is None:
-        return 1
-
-    def number(start: int, size: int) -> int:
-        digits = tiff[start : start + size]
-        return int.from_bytes(digits, "little" if order == "little" else "big")
-
-    entries = number(4, 4) + 2
-    for index in range(number(entries - 2, 2)):
-        entry = entries + 12 * index
-        if number(entry, 2) == _ORIENTATION_TAG:
-            value = number(entry + 8, 2)
-            return value if 1 <= value <= 8 else 1
-    return 1
-
-
-def _orient(texels: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Texels turned and mirrored so that orientation 1 is reached."""
-    if orientation == 1:
-        return texels
-    if orientation >= 5:
-        texels = texels.swapaxes(0, 1)
-    if orientation in (3, 4, 7, 8):
-        texels = texels[::-1]
-    if orientation in (2, 3, 6, 7):
-        texels = texels[:, ::-1]
-    return np.ascontiguousarray(texels)

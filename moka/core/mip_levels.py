@@ -19,34 +19,51 @@ __all__ = ["reduce_levels"]
 #: Values worked on at a time, so that temporaries stay in the cache.
 _BLOCK = 1 << 16
 
+#: White in 16 bits: what rounding adds to it must not carry over.
+_WHITE = 65532
+
 
 def reduce_levels(
-    texels: NDArray[Any], *, srgb: bool = False, normalise: bool = False
+    texels: NDArray[Any],
+    *,
+    srgb: bool = False,
+    opaque: bool = False,
+    normalise: bool = False,
+    finest: int = 0,
 ) -> list[NDArray[Any]]:
-    """The whole chain of mip levels, from ``texels`` itself down to 1 x 1.
+    """The chain of mip levels, from ``texels`` itself down to 1 x 1.
 
     ``texels`` is uint8 or uint16 of shape (H, W, C), and so are the levels,
     each half as large as the one before, rounded down. Every texel is the
     mean of the area it covers: 2 x 2 texels, or up to 3 x 3 with weights
     where a size is odd (Guthe and Heckbert, Non-Power-of-Two Mipmapping,
     NVIDIA 2005). ``srgb`` texels, of 8 bits, are averaged in linear light,
-    a last channel of two or four always as it is. ``normalise`` stretches
-    the vectors of a normal map back to unit length.
+    a last channel of two or four always as it is; ``opaque`` says that it is
+    white throughout. ``normalise`` stretches the vectors of a normal map back
+    to unit length. ``finest`` is the first level wanted; those before it are
+    left out.
     """
     if srgb and texels.dtype != np.uint8:
         raise ValueError("sRGB-encoded texels have 8 bits")
-    levels = [texels]
+    levels = [] if finest else [texels]
     linear: NDArray[np.uint16] | None = None
-    while max(levels[-1].shape[:2]) > 1:
+    for level in range(1, max(texels.shape[:2]).bit_length()):
         if linear is not None:
-            linear = _halve(linear)
-        elif texels.dtype == np.uint8 and not _has_odd_size(texels):
-            linear = _decode_and_halve(texels, srgb)
+            linear = _halve(linear, texels.dtype)
+        elif _has_lanes(texels) and texels.dtype == np.uint8:
+            linear = _decode_and_halve(texels, srgb=srgb, opaque=opaque)
         else:
-            linear = _halve(_decode(texels, srgb))
+            linear = _halve(_decode(texels, srgb), texels.dtype)
+        if level < finest:
+            continue
         encode = _encode_normals if normalise else _encode
         levels.append(encode(linear, texels.dtype, srgb))
     return levels
+
+
+def _has_lanes(texels: NDArray[Any]) -> bool:
+    """Whether texels are four channels in a block of even sizes."""
+    return texels.shape[2] == 4 and not _has_odd_size(texels)
 
 
 def _has_odd_size(texels: NDArray[Any]) -> bool:
@@ -69,64 +86,72 @@ def _decode(texels: NDArray[Any], srgb: bool) -> NDArray[np.uint16]:
     scaled <<= 8
     if srgb:
         colour = slice(-1 if _has_alpha(texels) else None)
-        table = np.rint(65535.0 * decode_srgb(np.arange(256) / 255.0))
+        table = np.rint(_WHITE * decode_srgb(np.arange(256) / 255.0))
         decoded = table.astype(np.uint16).take(texels[:, :, colour])
         scaled[:, :, colour] = decoded
     return scaled
 
 
 def _decode_and_halve(
-    texels: NDArray[np.uint8], srgb: bool
+    texels: NDArray[np.uint8], *, srgb: bool, opaque: bool
 ) -> NDArray[np.uint16]:
-    """The first level of 8-bit texels of even sizes, as 16-bit values.
+    """The first level of 8-bit RGBA of even sizes, as 16-bit values.
 
-    Three quarters of all the work is here. Two texels above one another
-    index a table of the sums of their decoded values, which spares half of
-    the look-ups.
+    Three quarters of all the work is here. Data are added as they are, four
+    channels of a texel at once as one number of 64 bits. Colours are looked
+    up, two neighbours at once in a table of the sums of what they decode to.
     """
-    height, width, channels = texels.shape
-    linear = np.empty((height // 2, width // 2, channels), np.uint16)
-    step = max(1, _BLOCK // (width * channels))
+    height, width, _ = texels.shape
+    texels = np.ascontiguousarray(texels)
+    linear = np.empty((height // 2, width // 2, 4), np.uint16)
+    step = max(1, _BLOCK // (2 * width))
     for start in range(0, height // 2, step):
         rows = texels[2 * start : 2 * (start + step)]
-        upper, lower = rows[0::2], rows[1::2]
-        if srgb:
-            pairs = upper.astype(np.intp)
-            pairs <<= 8
-            pairs |= lower
-            sums = _pair_table().take(pairs)
-        if not srgb or _has_alpha(texels):
-            plain = slice(-1 if srgb else None, None)
-            data = np.add(
-                upper[:, :, plain], lower[:, :, plain], dtype=np.uint16
-            )
-            data <<= 6
-            if srgb:
-                sums[:, :, plain] = data
-            else:
-                sums = data
-        for channel in range(channels):
-            np.add(
-                sums[:, 0::2, channel],
-                sums[:, 1::2, channel],
-                out=linear[start : start + step, :, channel],
-            )
+        target = linear[start : start + step]
+        if not (srgb and opaque):
+            sums = np.add(rows[0::2], rows[1::2], dtype=np.uint16)
+            sums <<= 6
+            _add_columns(sums, target)
+        if not srgb:
+            continue
+        for channel in range(3):
+            plane = np.ascontiguousarray(rows[:, :, channel])
+            pairs = _pair_table().take(plane.view(np.uint16), mode="clip")
+            np.add(pairs[0::2], pairs[1::2], out=target[:, :, channel])
+        if opaque:
+            target[:, :, 3] = 255 << 8
     return linear
+
+
+def _add_columns(
+    texels: NDArray[np.uint16], target: NDArray[np.uint16]
+) -> None:
+    """Sums of two neighbours each, of RGBA whose sums stay below 2^16."""
+    height = len(texels)
+    lanes = texels.reshape(height, -1).view(np.uint64)
+    half = target.reshape(height, -1).view(np.uint64)
+    np.add(lanes[:, 0::2], lanes[:, 1::2], out=half)
 
 
 @cache
 def _pair_table() -> NDArray[np.uint16]:
-    """A quarter of the sum of two decoded sRGB codes, at upper << 8 | lower.
+    """A quarter of the sum of two decoded sRGB codes, at one << 8 | other.
 
-    Two of them add up to a 16-bit value, also those of four white texels.
+    Four of them stay below 2^16.
     """
     linear = decode_srgb(np.arange(256) / 255.0)
-    sums = np.rint(65535.0 / 4.0 * (linear[:, np.newaxis] + linear))
-    return np.minimum(sums, 32767.0).astype(np.uint16).reshape(-1)
+    sums = np.rint(0.25 * _WHITE * (linear[:, np.newaxis] + linear))
+    return sums.astype(np.uint16).reshape(-1)
 
 
-def _halve(linear: NDArray[np.uint16]) -> NDArray[np.uint16]:
-    """The next level of 16-bit linear values of any size."""
+def _halve(
+    linear: NDArray[np.uint16], dtype: np.dtype[Any]
+) -> NDArray[np.uint16]:
+    """The next level of 16-bit linear values of any size.
+
+    Of texels of 8 bits a quarter of the steps in between is enough, so that
+    four values add up without a carry.
+    """
     if _has_odd_size(linear):
         exact = _halve_rows(linear.astype(np.float32))
         exact = _halve_rows(exact.swapaxes(0, 1)).swapaxes(0, 1)
@@ -138,6 +163,14 @@ def _halve(linear: NDArray[np.uint16]) -> NDArray[np.uint16]:
     step = max(1, _BLOCK // (width * channels))
     for start in range(0, height // 2, step):
         rows = linear[2 * start : 2 * (start + step)]
+        if dtype == np.uint8 and channels == 4:
+            # Half of the rows rounded up, and half of them down.
+            upper, lower = rows[0::2] + np.uint16(2), rows[1::2] + np.uint16(1)
+            upper >>= 2
+            lower >>= 2
+            upper += lower
+            _add_columns(upper, halved[start : start + step])
+            continue
         sums = np.add(rows[0::2], rows[1::2], dtype=np.uint32)
         for channel in range(channels):
             total = sums[:, 0::2, channel] + sums[:, 1::2, channel]

@@ -304,9 +304,7 @@ def _largest_step(sampler: SamplerDescriptor) -> float:
 
 def _coordinates(primitive: Primitive, texture: Texture) -> Array | None:
     """The texture coordinates (N, 2) of what stays where its arrays say."""
-    if getattr(primitive, "targets", None) is not None or any(
-        name.startswith("JOINTS_") for name in primitive.attributes
-    ):
+    if primitive.targets is not None or primitive.influence_sets:
         return None
     uv = primitive.attributes.get(f"TEXCOORD_{texture.uv_set}")
     if uv is None:

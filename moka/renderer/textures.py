@@ -144,6 +144,7 @@ class TexturePool:
         decoders: "list[_Decoder]",
         read: SampledLevels | None,
     ) -> Handle:
+        from moka.core.decode import with_alpha
         from moka.core.mip_levels import reduce_levels
 
         if (
@@ -169,19 +170,21 @@ class TexturePool:
                 if request.is_colour
                 else _DATA_FORMATS[texels.dtype.str[1:], texels.shape[2]]
             )
-            levels = (
-                reduce_levels(texels, srgb=request.is_colour)
-                if request.has_levels
-                else [texels]
-            )
-            height, width = texels.shape[:2]
-            finest = read.finest(width, height) if read else 0
-            if finest:
-                levels = levels[finest:]
-                self._statistics.count("textures_reduced")
-            if pixels in _PADDED:
+            opaque = pixels in _PADDED
+            if opaque:
                 pixels = _PADDED[pixels]
-                levels = [_padded(level) for level in levels]
+                texels = with_alpha(texels)
+            levels = [texels]
+            if request.has_levels:
+                height, width = texels.shape[:2]
+                finest = read.finest(width, height) if read else 0
+                self._statistics.count("textures_reduced", int(finest > 0))
+                levels = reduce_levels(
+                    texels,
+                    srgb=request.is_colour,
+                    opaque=opaque,
+                    finest=finest,
+                )
         height, width = levels[0].shape[:2]
         return self._device.create_texture(
             TextureDescriptor(
@@ -213,33 +216,32 @@ class _Decoder:
             return self._texels
 
 
-def _padded(texels: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """RGB with an alpha of 1, (H, W, 4)."""
-    padded = np.full((*texels.shape[:2], 4), 255, np.uint8)
-    for channel in range(3):
-        # Four times as fast as all three at once.
-        padded[:, :, channel] = texels[:, :, channel]
-    return padded
-
-
 def _grafted(
     texels: NDArray[Any], other: NDArray[Any], graft: Graft
 ) -> NDArray[Any]:
     """Texels of which one channel is that of another image of their size."""
-    kind = max(texels.dtype, other.dtype)
-    channels = [texels[:, :, index] for index in range(texels.shape[2])]
+    from moka.core.decode import with_alpha
+
     # In grey images red, green and blue are one.
-    of = graft.of if other.shape[2] > 2 else 0
-    channels[graft.into : graft.into + 1] = [other[:, :, of]]
-    joined = np.empty((*texels.shape[:2], len(channels)), kind)
-    for index, channel in enumerate(channels):
-        # 255 becomes 65 535.
-        joined[:, :, index] = (
-            channel
-            if channel.dtype == kind
-            else channel.astype(kind) * kind.type(257)
-        )
-    return joined
+    channel = other[:, :, graft.of if other.shape[2] > 2 else 0]
+    kind = max(texels.dtype, other.dtype)
+    channels = max(texels.shape[2], graft.into + 1)
+    if texels.shape[2] == 3 and texels.dtype == np.uint8:
+        texels = with_alpha(texels)
+    stored = max(texels.shape[2], channels)
+    joined = np.empty((*texels.shape[:2], stored), kind)
+    joined[:, :, : texels.shape[2]] = _widened(texels, kind)
+    joined[:, :, graft.into] = _widened(channel, kind)
+    # Without what is only padding, which is found again.
+    return joined[:, :, :channels]
+
+
+def _widened(texels: NDArray[Any], kind: np.dtype[Any]) -> NDArray[Any]:
+    """Codes as codes of a type that may be wider: 255 becomes 65 535."""
+    if texels.dtype == kind:
+        return texels
+    wide: NDArray[Any] = texels.astype(kind) * kind.type(257)
+    return wide
 
 
 def _arrange(texels: NDArray[Any], *, is_colour: bool) -> NDArray[Any]:

@@ -126,3 +126,39 @@ def test_normals_that_cancel_become_flat() -> None:
 def test_srgb_of_sixteen_bits_is_refused() -> None:
     with pytest.raises(ValueError, match="8 bits"):
         reduce_levels(noise(2, 2, 3, dtype=np.uint16), srgb=True)
+
+
+@pytest.mark.parametrize("shape", [(64, 32, 4), (31, 20, 3)])
+def test_levels_from_the_finest_wanted_on(shape: tuple[int, ...]) -> None:
+    texels = noise(*shape)
+    whole = reduce_levels(texels, srgb=True)
+    for finest in range(len(whole)):
+        part = reduce_levels(texels, srgb=True, finest=finest)
+        assert len(part) == len(whole) - finest
+        for level, same in zip(part, whole[finest:], strict=True):
+            np.testing.assert_array_equal(level, same)
+
+
+@pytest.mark.parametrize("srgb", [False, True])
+@pytest.mark.parametrize("shape", [(64, 256), (48, 40), (13, 6)])
+def test_opaque_colours_are_those_of_white_alpha(
+    shape: tuple[int, int], srgb: bool
+) -> None:
+    texels = noise(*shape, 4)
+    texels[:, :, 3] = 255
+    for level, same in zip(
+        reduce_levels(texels, srgb=srgb, opaque=True),
+        reduce_levels(texels, srgb=srgb),
+        strict=True,
+    ):
+        np.testing.assert_array_equal(level, same)
+
+
+@pytest.mark.parametrize("value", [1, 2, 3, 20, 128, 254])
+def test_rounding_does_not_add_up(value: int) -> None:
+    """Eleven levels of texels of two neighbouring codes."""
+    texels = np.full((2048, 64, 4), value, np.uint8)
+    texels[::2, ::2] += 1
+    exact = oracle(texels[:2, :2], srgb=True)[0] * 255
+    for level in reduce_levels(texels, srgb=True)[1:]:
+        assert np.abs(level - exact).max() < 0.65
