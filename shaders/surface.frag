@@ -24,6 +24,9 @@ void main() {
 #endif
 #ifdef MOKA_UNLIT
     vec3 light = base.rgb;
+#ifdef MOKA_EMISSIVE
+    light += emission(row);
+#endif
 #else
     vec3 packed_values = occlusion_roughness_metalness(row);
     vec3 view = surface_view();

@@ -3,6 +3,7 @@
 #include "include/instance.glsl"
 #include "include/morph.glsl"
 #include "include/skin.glsl"
+#include "include/line.glsl"
 
 in vec3 position;
 out vec3 surface_position;  // world space, relative to the camera
@@ -96,6 +97,11 @@ void main() {
         vec4(0.0), min(colour, 1.0), greaterThan(colour, vec4(0.0)));
 #endif
     gl_Position = clip_from_world * vec4(surface_position, 1.0);
+#ifdef MOKA_LINES
+    gl_Position = line_corner(
+        gl_Position,
+        clip_from_world * vec4(place_point(rows, line_other.xyz), 1.0));
+#endif
 #ifdef MOKA_POINTS
     gl_PointSize = point_size;
 #endif

@@ -36,6 +36,16 @@ __all__ = [
 ]
 
 
+_POINTS_AND_LINES = frozenset(
+    (
+        Topology.POINTS,
+        Topology.LINES,
+        Topology.LINE_LOOP,
+        Topology.LINE_STRIP,
+    )
+)
+
+
 class Feature(IntFlag):
     """What a surface shader is compiled with."""
 
@@ -55,6 +65,8 @@ class Feature(IntFlag):
     # as the file has it or put together while decoding.
     PACKED_OCCLUSION = auto()
     POINTS = auto()
+    # Segments as quads.
+    LINES = auto()
 
 
 # What a morph target adds to a vertex, in texels of four numbers: which
@@ -104,13 +116,17 @@ class MaterialDescription(Struct, frozen=True):
 
     @property
     def attributes(self) -> tuple[str, ...]:
-        """The glTF vertex attributes that the shader reads."""
+        """The vertex attributes that the shader reads, by glTF's names.
+
+        Corners of lines have LINE_OTHER besides.
+        """
         wanted = {
             "NORMAL": Feature.VERTEX_NORMAL,
             "TANGENT": Feature.VERTEX_TANGENT,
             "TEXCOORD_0": Feature.UV_0,
             "TEXCOORD_1": Feature.UV_1,
             "COLOR_0": Feature.VERTEX_COLOUR,
+            "LINE_OTHER": Feature.LINES,
         }
         return (
             "POSITION",
@@ -136,15 +152,28 @@ def describe_material(
     ``morphed`` are the attributes that morph targets change. Only what
     changes the picture is kept: a normal map means nothing to an unlit
     surface or without texture coordinates, an emissive texture nothing
-    under a black factor, a tangent nothing without a normal map. Unless it
-    ``carries``, no texture takes up the values of another.
+    under a black factor, a tangent nothing without a normal map. Points and
+    lines without normals show base colour and emission, and have no normal
+    map without tangents (glTF 2.0, section 3.9.6). Unless it ``carries``, no
+    texture takes up the values of another.
     Raises ModelError for a texture coordinate set above 1.
     """
     slots = texture_slots(material)
     features = Feature(0)
+    is_surface = topology not in _POINTS_AND_LINES
+    unlit = material.unlit or not (is_surface or "NORMAL" in attributes)
+    if not is_surface and "TANGENT" not in attributes:
+        slots.pop("normal", None)
     if material.unlit:
         features |= Feature.UNLIT
         slots = {k: v for k, v in slots.items() if k == "base_colour"}
+    elif unlit:
+        features |= Feature.UNLIT
+        if any(material.emissive_factor):
+            features |= Feature.EMISSIVE
+        slots = {
+            k: v for k, v in slots.items() if k in ("base_colour", "emissive")
+        }
     else:
         if any(material.emissive_factor):
             features |= Feature.EMISSIVE
@@ -165,7 +194,7 @@ def describe_material(
         features |= Feature.PACKED_OCCLUSION
     for texture in slots.values():
         features |= Feature.UV_1 if texture.uv_set else Feature.UV_0
-    if not material.unlit and "NORMAL" in attributes:
+    if not unlit and "NORMAL" in attributes:
         features |= Feature.VERTEX_NORMAL
         if "normal" in slots and "TANGENT" in attributes:
             features |= Feature.VERTEX_TANGENT
@@ -175,6 +204,10 @@ def describe_material(
         features |= Feature.DOUBLE_SIDED
     if topology is Topology.POINTS:
         features |= Feature.POINTS
+    elif not (is_surface or morphed or "JOINTS_0" in attributes):
+        # A corner that moves would have to know where its other end goes:
+        # lines that change their shape stay as thin as the driver's.
+        features |= Feature.LINES
     features |= {
         AlphaMode.OPAQUE: Feature(0),
         AlphaMode.MASK: Feature.ALPHA_MASK,

@@ -25,6 +25,7 @@ from moka.commands.descriptors import (
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.model.mesh import INFLUENCES, Primitive
+from moka.renderer.vertices import LINE_OTHER, Vertices, vertices_of
 
 __all__ = ["GeometryPool"]
 
@@ -37,6 +38,7 @@ _ATTRIBUTES = {
     "TEXCOORD_1": ("uv_1", 2),
     "COLOR_0": ("colour_0", 4),
     **{name: (name.lower(), 4) for name in INFLUENCES},
+    LINE_OTHER: ("line_other", 4),
 }
 
 
@@ -86,12 +88,12 @@ class GeometryPool:
             for key, (primitive, _) in zip(keys, wanted, strict=True)
             if key not in self._meshes
         }
-        groups: dict[tuple[tuple[str, ...], bool], dict[_Key, Primitive]] = (
+        groups: dict[tuple[tuple[str, ...], bool], dict[_Key, Vertices]] = (
             defaultdict(dict)
         )
         for key, primitive in missing.items():
-            indexed = primitive.indices is not None
-            groups[key.wanted, indexed][key] = primitive
+            vertices = vertices_of(primitive, key.wanted)
+            groups[key.wanted, vertices.indices is not None][key] = vertices
         for members in groups.values():
             upload = _upload(self._device, members)
             self._uploads.append(upload)
@@ -132,9 +134,9 @@ def vertex_layout(wanted: Sequence[str]) -> VertexLayout:
 
 
 def _upload(
-    device: GraphicsDevice, members: Mapping[_Key, Primitive]
+    device: GraphicsDevice, members: Mapping[_Key, Vertices]
 ) -> _Upload:
-    """One vertex and one index buffer for primitives of one layout."""
+    """One vertex and one index buffer for vertices of one layout."""
     wanted = next(iter(members)).wanted
     layout = vertex_layout(wanted)
     vertex_buffer = _buffer(
@@ -145,13 +147,13 @@ def _upload(
     buffers = [vertex_buffer]
     index_buffer, index_type = None, IndexType.UINT32
     indices = [
-        primitive.indices
-        for primitive in members.values()
-        if primitive.indices is not None
+        vertices.indices
+        for vertices in members.values()
+        if vertices.indices is not None
     ]
     if indices:
         # 16 bits if every primitive's own vertices can be counted with them.
-        if max(each.vertex_count for each in members.values()) <= 0xFFFF:
+        if max(vertices.count for vertices in members.values()) <= 0xFFFF:
             index_type = IndexType.UINT16
         joined = np.concatenate(
             indices, dtype=index_type.value, casting="unsafe"
@@ -160,12 +162,13 @@ def _upload(
         buffers.append(index_buffer)
     meshes, base_vertices = {}, {}
     base_vertex = first = 0
-    for key, primitive in members.items():
+    for key, vertices in members.items():
         base_vertices[key] = base_vertex
-        count = primitive.index_count or primitive.vertex_count
+        order = vertices.indices
+        count = vertices.count if order is None else len(order)
         meshes[key] = device.create_mesh(
             MeshDescriptor(
-                primitive.topology,
+                vertices.topology,
                 count,
                 first,
                 base_vertex,
@@ -175,30 +178,29 @@ def _upload(
                 index_type,
             )
         )
-        base_vertex += primitive.vertex_count
+        base_vertex += vertices.count
         first += count if indices else 0
     return _Upload(meshes, base_vertices, buffers)
 
 
 def _interleave(
-    primitives: Sequence[Primitive], wanted: Sequence[str], width: int
+    members: Sequence[Vertices], wanted: Sequence[str], width: int
 ) -> NDArray[np.float32]:
     """Their vertices one after the other, ``width`` floats each.
 
     Written straight to their place: a cloud of ten million points is not
     copied twice.
     """
-    count = sum(primitive.vertex_count for primitive in primitives)
-    vertices = np.empty((count, width), np.float32)
+    joined = np.empty((sum(each.count for each in members), width), np.float32)
     end = 0
-    for primitive in primitives:
-        first, end = end, end + primitive.vertex_count
+    for vertices in members:
+        first, end = end, end + vertices.count
         column = 0
         for name in wanted:
-            array = primitive.attributes[name]
-            vertices[first:end, column : column + array.shape[1]] = array
+            array = vertices.attributes[name]
+            joined[first:end, column : column + array.shape[1]] = array
             column += array.shape[1]
-    return vertices.reshape(-1)
+    return joined.reshape(-1)
 
 
 def _buffer(

@@ -40,6 +40,9 @@ FRAME = UniformLayout(
         # The level of the specular cube for roughness 1.
         Parameter("specular_levels", ParameterType.FLOAT),
         Parameter("light_count", ParameterType.INT),
+        # Width and height in pixels, and of what is drawn as lines or points.
+        Parameter("picture_size", ParameterType.VEC2),
+        Parameter("line_width", ParameterType.FLOAT),
         Parameter("point_size", ParameterType.FLOAT),
         # With MOKA_LOGARITHMIC_DEPTH: View.depth_range.
         Parameter("depth_range", ParameterType.VEC3),

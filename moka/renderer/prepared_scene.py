@@ -210,7 +210,9 @@ class PreparedScene:
         self, description: MaterialDescription, *, is_reversed: bool
     ) -> int:
         """The number of a state; the next one is its mirrored twin."""
-        double_sided = Feature.DOUBLE_SIDED in description.features
+        # A line has no back, and its quads face the camera.
+        is_line = Feature.LINES in description.features
+        double_sided = is_line or Feature.DOUBLE_SIDED in description.features
         blended = description.is_blended
         cull = CullMode.NONE if double_sided else CullMode.BACK
         nearer = (
@@ -223,11 +225,13 @@ class PreparedScene:
             RasterState(
                 cull, clockwise, nearer, depth_write=not blended, blend=blend
             )
-            for clockwise in (False, True)
+            for clockwise in (False, not is_line)
         ]
-        if pair[0] not in self.states:
-            self.states += pair
-        return self.states.index(pair[0])
+        for number in range(0, len(self.states), 2):
+            if self.states[number : number + 2] == pair:
+                return number
+        self.states += pair
+        return len(self.states) - 2
 
 
 def _layer(description: MaterialDescription) -> int:

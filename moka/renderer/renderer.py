@@ -64,7 +64,9 @@ PASS_DISPLAY = 3
 PASS_VALUES = 4
 PASS_READ = 5
 
-# Points are drawn as squares of this part of the picture's height.
+# Lines are as wide as this part of the picture's height, points are squares
+# of the other one; a pixel at least.
+_LINE_WIDTH = 1 / 720
 _POINT_SIZE = 1 / 360
 
 
@@ -494,6 +496,8 @@ class Renderer:
                 "environment_intensity": scene.environment_intensity,
                 "specular_levels": self._sources.maps.specular_levels - 1,
                 "light_count": len(lights),
+                "picture_size": self.size,
+                "line_width": max(1.0, self.size[1] * _LINE_WIDTH),
                 "point_size": max(1.0, self.size[1] * _POINT_SIZE),
                 "depth_range": view.depth_range or (0.0, 0.0, 0.0),
                 "sample_range": (
