@@ -32,6 +32,7 @@ __all__ = [
     "defines_of",
     "describe_material",
     "morph_texels",
+    "moves",
     "texture_slots",
 ]
 
@@ -154,7 +155,8 @@ def describe_material(
     surface or without texture coordinates, an emissive texture nothing
     under a black factor, a tangent nothing without a normal map. Points and
     lines without normals show base colour and emission, and have no normal
-    map without tangents (glTF 2.0, section 3.9.6). Unless it ``carries``, no
+    map without tangents (glTF 2.0, section 3.9.6). What animations change is
+    described so that every value can be drawn. Unless it ``carries``, no
     texture takes up the values of another.
     Raises ModelError for a texture coordinate set above 1.
     """
@@ -169,15 +171,19 @@ def describe_material(
         slots = {k: v for k, v in slots.items() if k == "base_colour"}
     elif unlit:
         features |= Feature.UNLIT
-        if any(material.emissive_factor):
+        if _can_glow(material):
             features |= Feature.EMISSIVE
         slots = {
             k: v for k, v in slots.items() if k in ("base_colour", "emissive")
         }
     else:
-        if any(material.emissive_factor):
+        if _can_glow(material):
             features |= Feature.EMISSIVE
-        if material.metallic_factor < 1 or "metallic_roughness" in slots:
+        if (
+            material.metallic_factor < 1
+            or "metallic_factor" in material.animated
+            or "metallic_roughness" in slots
+        ):
             features |= Feature.DIFFUSE
     slots = {
         slot: texture
@@ -189,7 +195,9 @@ def describe_material(
         del slots["metallic_roughness"]
     if "occlusion" in carriers:
         del slots["occlusion"]
-    if _shares_sample(slots.get("occlusion"), slots.get("metallic_roughness")):
+    if _shares_sample(
+        slots.get("occlusion"), slots.get("metallic_roughness")
+    ) and not (moves(material, "occlusion", "metallic_roughness")):
         del slots["occlusion"]
         features |= Feature.PACKED_OCCLUSION
     for texture in slots.values():
@@ -245,19 +253,38 @@ def morph_texels(morphed: Collection[str]) -> dict[str, int]:
 
 
 def texture_slots(material: Material) -> dict[str, Texture]:
-    """The textures that can change the picture, by slot, in fixed order."""
+    """The textures that can change the picture, by slot, in fixed order.
+
+    Those of a factor of 0 cannot, unless animations change it.
+    """
+    animated = material.animated
     slots = {
         "base_colour": material.base_colour_texture,
         "metallic_roughness": material.metallic_roughness_texture,
-        "normal": material.normal_texture if material.normal_scale else None,
+        "normal": (
+            material.normal_texture
+            if material.normal_scale or "normal_scale" in animated
+            else None
+        ),
         "occlusion": (
-            material.occlusion_texture if material.occlusion_strength else None
+            material.occlusion_texture
+            if material.occlusion_strength or "occlusion_strength" in animated
+            else None
         ),
         "emissive": (
-            material.emissive_texture if any(material.emissive_factor) else None
+            material.emissive_texture if _can_glow(material) else None
         ),
     }
     return {slot: texture for slot, texture in slots.items() if texture}
+
+
+def moves(material: Material, *slots: str) -> bool:
+    """Whether animations move the texture coordinates of any of ``slots``."""
+    return any(
+        name.partition("_texture.")[0] in slots
+        for name in material.animated
+        if "." in name
+    )
 
 
 def defines_of(description: MaterialDescription) -> dict[str, str | int]:
@@ -284,6 +311,13 @@ def defines_of(description: MaterialDescription) -> dict[str, str | int]:
         for texel, number in texels.items():
             defines[f"MOKA_MORPH_{texel}"] = number
     return defines
+
+
+def _can_glow(material: Material) -> bool:
+    """Whether the emissive factor is, or may become, more than black."""
+    return any(material.emissive_factor) or bool(
+        material.animated & {"emissive_factor", "emissive_strength"}
+    )
 
 
 def _uv_attribute(material: Material, slot: str, texture: Texture) -> str:

@@ -3,10 +3,11 @@
 Materials with texture transforms have longer rows and pages of their own.
 """
 
-from collections.abc import Collection, Hashable
+from collections.abc import Collection, Hashable, Iterable, Iterator
 
 import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 
 from moka.commands.descriptors import BufferDescriptor, BufferUsage
 from moka.commands.handles import Handle
@@ -26,7 +27,10 @@ class MaterialPlace(Struct, frozen=True):
 
 
 class MaterialTable:
-    """Places of materials; the table is written once when it is made."""
+    """Places of materials; the table is written once when it is made.
+
+    Only pages with materials that animations change are written again.
+    """
 
     def __init__(
         self,
@@ -37,6 +41,7 @@ class MaterialTable:
         self._device = device
         self._places: dict[Hashable, MaterialPlace] = {}
         self.pages: list[Handle] = []
+        self._live_rows: dict[Handle, NDArray[np.void]] = {}
         for has_transforms in (False, True):
             members = list(
                 dict.fromkeys(
@@ -53,10 +58,35 @@ class MaterialTable:
         """Where ``material`` lies."""
         return self._places[material, has_transforms]
 
+    def update(
+        self, changes: Iterable[tuple[Material, Material]]
+    ) -> Iterator[tuple[Handle, NDArray[np.void], int]]:
+        """Give places of materials the numbers of others.
+
+        What to write: the page, rows of it, and at which byte these go.
+        """
+        spans: dict[Handle, tuple[int, int]] = {}
+        for material, now in changes:
+            for has_transforms in (False, True):
+                place = self._places.get((material, has_transforms))
+                if place is None:
+                    continue
+                row = place.row
+                materials_layout(has_transforms=has_transforms).fill(
+                    self._live_rows[place.page][row : row + 1],
+                    material_values(now, has_transforms=has_transforms),
+                )
+                first, last = spans.get(place.page, (row, row))
+                spans[place.page] = min(first, row), max(last, row)
+        for page, (first, last) in spans.items():
+            rows = self._live_rows[page]
+            yield page, rows[first : last + 1], first * rows.itemsize
+
     def destroy(self) -> None:
         """Destroy the pages."""
         self._device.destroy(*self.pages)
         self.pages.clear()
+        self._live_rows.clear()
 
     def _write(
         self, materials: list[Material], *, has_transforms: bool
@@ -70,13 +100,19 @@ class MaterialTable:
                     rows[index : index + 1],
                     material_values(material, has_transforms=has_transforms),
                 )
+            is_live = any(material.animated for material in members)
             page = self._device.create_buffer(
                 BufferDescriptor(
-                    BufferUsage.UNIFORM, rows.nbytes, label="materials"
+                    BufferUsage.UNIFORM,
+                    rows.nbytes,
+                    dynamic=is_live,
+                    label="materials",
                 ),
                 rows.tobytes(),
             )
             self.pages.append(page)
+            if is_live:
+                self._live_rows[page] = rows
             for index, material in enumerate(members):
                 self._places[material, has_transforms] = MaterialPlace(
                     page, index

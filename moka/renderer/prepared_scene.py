@@ -5,10 +5,12 @@ frame is array operations over the rows that are made here.
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
 
+from moka.commands.command_list import CommandBuffer
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BlendState,
@@ -39,6 +41,9 @@ from moka.renderer.material_table import MaterialTable
 from moka.renderer.permutation import LightingDescription, Permutation
 from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.textures import TexturePool, TextureRequest
+
+if TYPE_CHECKING:
+    from moka.scene.live_materials import LiveMaterials
 
 __all__ = [
     "LAYER_BACKGROUND",
@@ -152,6 +157,18 @@ class PreparedScene:
         self.program_count = len(set(surfaces))
         self.permutation_count = len(set(permutations))
         self.is_lit = materials.has_lit
+        self._live_version = 0
+
+    def update_materials(
+        self, live: "LiveMaterials", commands: CommandBuffer
+    ) -> None:
+        """Write the materials that animations changed since the last call."""
+        if live.version == self._live_version:
+            return
+        changes = live.changed_since(self._live_version)
+        self._live_version = live.version
+        for page, rows, offset in self._table.update(changes):
+            commands.fill_buffer(page, rows, offset)
 
     def destroy(self) -> None:
         """Destroy what it owns; meshes and textures belong to pools."""

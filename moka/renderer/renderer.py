@@ -429,6 +429,8 @@ class Renderer:
             self._poses.update(visible, self._geometry, commands)
         setup = commands.command_buffer(SortKey(PASS_SCENE))
         setup.fill_buffer(self._frame, self._frame_values(scene, view, lights))
+        if scene.live_materials is not None:
+            prepared.update_materials(scene.live_materials, setup)
         if capacity:
             setup.fill_buffer(
                 self._sources.buffer(capacity), lights.view(np.uint8)
@@ -475,6 +477,7 @@ class Renderer:
             scene.transforms.version,
             scene.pose_version,
             scene.visibility_version,
+            scene.live_materials and scene.live_materials.version,
             view.position.tobytes(),
             view.clip_from_world.tobytes(),
             lights.tobytes(),

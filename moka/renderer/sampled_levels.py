@@ -81,7 +81,7 @@ class StillPicture:
         draws = draws[order]
         self._mirrored = scene.drawables.mirrored[draws]
         drawn, first = np.unique(primitive[order], return_index=True)
-        ends = np.append(first[1:], len(draws))
+        ends = np.append(first, len(draws))[1:]
         self._draws_of = {
             index: range(start, end)
             for index, start, end in zip(

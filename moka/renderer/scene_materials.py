@@ -14,6 +14,7 @@ from moka.material.description import (
     Feature,
     MaterialDescription,
     describe_material,
+    moves,
     texture_slots,
 )
 from moka.material.material import Material, Texture
@@ -61,6 +62,7 @@ class SceneMaterials:
         self.requests: list[dict[str, TextureRequest]] = []
         images: dict[TextureRequest, list[EncodedImage]] = {}
         reads: dict[TextureRequest, list[tuple[int, Texture]]] = {}
+        moving: set[TextureRequest] = set()
         known: dict[
             tuple[Material, tuple[str, ...], object, frozenset[str]],
             tuple[MaterialDescription, dict[str, TextureRequest]],
@@ -97,9 +99,12 @@ class SceneMaterials:
             slots = texture_slots(material)
             for slot, request in requests.items():
                 reads.setdefault(request, []).append((index, slots[slot]))
+                if moves(material, slot):
+                    moving.add(request)
         for request, given in images.items():
             levels = None
-            if picture is not None:
+            # Coordinates that animations move are not those of the file.
+            if picture is not None and request not in moving:
                 levels = SampledLevels(picture, reads[request])
             textures.begin(request, given, levels)
         # By identity: embedded images need not be hashed to be left out.

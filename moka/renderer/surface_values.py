@@ -172,6 +172,8 @@ class SurfaceValues:
         targets = self._update_targets(size, groups)
         is_reversed = self._device.info.clip_control
         buffer = commands.command_buffer(SortKey(pass_))
+        if scene.live_materials is not None:
+            prepared.update_materials(scene.live_materials, buffer)
         buffer.bind_framebuffer(targets.framebuffer)
         buffer.clear((0, 0, 0, 0), 0.0 if is_reversed else 1.0)
         states = [commands.state_index(state) for state in prepared.states]

@@ -4,9 +4,9 @@ import math
 from typing import TYPE_CHECKING
 
 from moka.core.errors import OptionError
-from moka.scene.clips import Clips
-from moka.scene.pose import Pose, blended
-from moka.scene.posing import PosedModel
+from moka.scene.animated_model import AnimatedModel
+from moka.scene.animation_clips import Clips
+from moka.scene.animation_pose import Pose, blended
 
 if TYPE_CHECKING:
     from moka.scene.scene_model import SceneModel
@@ -90,7 +90,7 @@ class AnimationPlayer:
     def __init__(self, model: "SceneModel", clips: Clips) -> None:
         self._clips = clips
         self._model = model
-        self._posed = PosedModel(model, clips.layout)
+        self._animated = AnimatedModel(model, clips.layout)
         self._layers: list[Playback] = []
         self._shown: tuple[tuple[int, float, float], ...] = ()
         self.paused = False
@@ -222,7 +222,7 @@ class AnimationPlayer:
         if shown == self._shown:
             return
         self._shown = shown
-        self._posed.take(self._pose())
+        self._animated.take(self._pose())
 
     def _pose(self) -> Pose:
         """What the layers show together, over the pose of the file."""

@@ -4,7 +4,7 @@ Built when models come or go. While things only move, the boxes of the rows
 that moved are all that is computed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from moka.core.errors import ModelError, OptionError
 from moka.core.maths import Array, is_mirrored, transform_bounds, union_bounds
+from moka.material.material import Material
 from moka.model.mesh import Primitive
 from moka.model.model import Model
 from moka.scene.forest import Rows
@@ -25,7 +26,7 @@ from moka.scene.level_of_detail import (
 from moka.scene.transforms import TransformTree, check_affine
 
 if TYPE_CHECKING:
-    from moka.scene.clips import Clips
+    from moka.scene.animation_clips import Clips
     from moka.scene.morph_weights import MorphWeights
     from moka.scene.poses import Poses
 
@@ -93,10 +94,27 @@ class ModelLayout:
             np.array(boxes, np.float64), (-1, 2, 3)
         )[self.primitive]
 
+    def with_materials(self, own: Mapping[Material, Material]) -> "ModelLayout":
+        """The same with other materials in place of some; itself for none.
+
+        Geometry and animations stay those of all copies.
+        """
+        if not own:
+            return self
+        made = copy(self)
+        made.clips = self.clips
+        made.primitives = [
+            primitive.with_material(own[primitive.material])
+            if primitive.material is not None and primitive.material in own
+            else primitive
+            for primitive in self.primitives
+        ]
+        return made
+
     @cached_property
     def clips(self) -> "Clips":
         """The model's animations, as its copies share them."""
-        from moka.scene.clips import Clips
+        from moka.scene.animation_clips import Clips
 
         return Clips(self.model)
 

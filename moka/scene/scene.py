@@ -28,6 +28,7 @@ from moka.scene.transforms import TransformTree
 
 if TYPE_CHECKING:
     from moka.scene.animation_player import AnimationPlayer
+    from moka.scene.live_materials import LiveMaterials
 
 __all__ = ["Scene"]
 
@@ -42,7 +43,7 @@ class Scene:
     For the renderer, as of the last :meth:`update`: ``transforms`` with its
     own ``version``, ``drawables`` which are new when ``structure_version``
     is, and ``shown`` (D,), which draws belong to visible models, new when
-    ``visibility_version`` is.
+    ``visibility_version`` is; ``live_materials`` is None where none moves.
     """
 
     def __init__(self) -> None:
@@ -58,6 +59,7 @@ class Scene:
         self._models: dict[SceneModel, None] = {}  # A set that keeps order.
         self._model_rows: set[int] = set()  # Transforms that move models.
         self._lights: list[Light] = []
+        self.live_materials: LiveMaterials | None = None
         self._players: dict[SceneModel, AnimationPlayer] = {}
         # Layouts live as long as a copy of their model, whose id is the key.
         self._layouts: WeakValueDictionary[
@@ -143,6 +145,10 @@ class Scene:
                 "one its own and make that the parent"
             )
         added = SceneModel(self, layout, place)
+        if added.own_materials and self.live_materials is None:
+            from moka.scene.live_materials import LiveMaterials
+
+            self.live_materials = LiveMaterials()
         self._models[added] = None
         self._model_rows.update(added.rows.tolist(), [place.row])
         self.structure_version += 1
@@ -181,6 +187,8 @@ class Scene:
         if isinstance(item, SceneModel) and item in self._models:
             del self._models[item]
             self._players.pop(item, None)
+            if self.live_materials is not None:
+                self.live_materials.forget(item.own_materials.values())
             self.structure_version += 1
             rows = np.append(item.rows, item.transform.row)
             self._model_rows.difference_update(rows.tolist())

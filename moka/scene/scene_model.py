@@ -2,7 +2,10 @@
 
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from moka.core.errors import OptionError
+from moka.material.material import Material
 from moka.model.model import Model
 from moka.scene.camera import Camera
 from moka.scene.drawables import ModelLayout
@@ -21,10 +24,12 @@ __all__ = ["SceneModel"]
 class SceneModel:
     """A model, its place in the world, and its nodes there.
 
-    ``transform`` moves the whole; ``rows`` (N,) are the transform rows of
-    the model's nodes; ``cameras`` and ``lights`` are those that its nodes
-    place; ``morph_weights`` are the weights of its morph targets, None
-    without any. Made by :meth:`moka.Scene.add`.
+    ``scene`` is the one that it is in, ``transform`` moves the whole;
+    ``rows`` (N,) are the transform rows of the model's nodes; ``cameras``
+    and ``lights`` are those that its nodes place; ``morph_weights`` are the
+    weights of its morph targets, None without any, ``own_materials`` what it
+    has in place of materials of the model that are animated. Made by
+    :meth:`moka.Scene.add`.
     """
 
     def __init__(
@@ -35,7 +40,13 @@ class SceneModel:
     ) -> None:
         model = layout.model
         self.model: Model = model
-        self.layout = layout
+        # What animations change is this copy's alone.
+        self.own_materials: dict[Material, Material] = {
+            material: replace(material)
+            for material in model.materials
+            if material.animated
+        }
+        self.layout = layout.with_materials(self.own_materials)
         self.transform = transform
         self.rows: Rows = transform.tree.add_many(
             model.nodes.local, model.nodes.parents, transform.row
@@ -51,7 +62,7 @@ class SceneModel:
             for node, light in layout.lights
         ]
         self.morph_weights = _morph_weights(model)
-        self._scene = scene
+        self.scene = scene
         self._visible = True
         self._player: AnimationPlayer | None = None
 
@@ -67,7 +78,7 @@ class SceneModel:
     def visible(self, value: bool) -> None:
         if value != self._visible:
             self._visible = value
-            self._scene.visibility_version += 1
+            self.scene.visibility_version += 1
 
     @property
     def animations(self) -> "AnimationPlayer":
@@ -76,7 +87,7 @@ class SceneModel:
             from moka.scene.animation_player import AnimationPlayer
 
             self._player = AnimationPlayer(self, self.layout.clips)
-            self._scene.add_player(self, self._player)
+            self.scene.add_player(self, self._player)
         return self._player
 
     @property
@@ -93,10 +104,9 @@ class SceneModel:
     def variant(self, value: str | int | None) -> None:
         number = self.model.variant_index(value)
         if number != self.layout.variant:
-            self.layout = self._scene.layout_of(
-                self.model, self.layout.scene, number
-            )
-            self._scene.structure_version += 1
+            layout = self.scene.layout_of(self.model, self.layout.scene, number)
+            self.layout = layout.with_materials(self.own_materials)
+            self.scene.structure_version += 1
 
     def node(self, node: int | str) -> Transform:
         """The transform of a node, by its row in ``model.nodes`` or name.
@@ -124,7 +134,7 @@ class SceneModel:
         Its transforms cannot be used any more; what other things were put
         below them stays where it is in the world.
         """
-        self._scene.remove(self)
+        self.scene.remove(self)
 
     def _camera(self, node: int, number: int) -> Camera:
         """A camera of the file where a node places it."""

@@ -12,9 +12,9 @@ import numpy as np
 
 from moka.core.interpolation import lerp, slerp
 from moka.core.maths import Array
-from moka.material.material import Material, TextureTransform
 from moka.model.animation import AnimationTarget, Property, rest_transforms
 from moka.model.model import Model
+from moka.scene.animated_material import material_value
 from moka.scene.forest import Rows
 from moka.scene.morph_weights import MorphWeights
 
@@ -106,7 +106,8 @@ def _rest(
     if name == "weights":
         return weights.values[things, None].astype(np.float64)
     if name == "visible":
-        return np.ones((len(things), 1))
+        shown = ~np.isin(things, model.nodes.hidden)
+        return shown[:, None].astype(np.float64)
     owners: Any = {
         "material": model.materials,
         "light": model.lights,
@@ -121,15 +122,3 @@ def _rest(
     # What has no end is as far as float32 goes, so that it can be blended.
     column = np.minimum(np.array(values, np.float64), _LARGEST)
     return column.reshape(len(things), -1)
-
-
-def material_value(material: Material, name: str) -> Any:
-    """A material's number or numbers of that name."""
-    if name == "emissive_strength":
-        return 1.0  # The factor holds it already.
-    owner, _, part = name.partition(".")
-    value = getattr(material, owner)
-    if not part:
-        return value
-    transform = value.transform if value is not None else None
-    return getattr(transform or TextureTransform(), part)

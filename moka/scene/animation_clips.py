@@ -2,8 +2,8 @@
 
 from moka.core.errors import OptionError
 from moka.model.model import Model
+from moka.scene.animation_pose import Pose, PoseLayout
 from moka.scene.keyframes import KeyframeSampler
-from moka.scene.pose import Pose, PoseLayout
 
 __all__ = ["Clips"]
 
