@@ -26,6 +26,9 @@ HEADLESS_DELTA = 1 / 60
 # How long, in seconds, a loop with nothing to draw sleeps unless woken.
 _NAP = 0.5
 
+# How long, in seconds, a frame may keep the window from what happens to it.
+_ANSWER = 0.05
+
 
 def run(
     app: App | type[App],
@@ -178,6 +181,10 @@ def _loop(app: App, window: "Window", frames: int | None) -> None:
             continue
         app.input.gamepads = window.gamepads
         commands = _record(app, clock, now - before if number else 0.0)
+        while not app.device.is_ready(_ANSWER):
+            # A long frame before this one: the window answers all the same.
+            for event in window.poll():
+                _dispatch(app, event)
         app.device.submit_and_present(commands)
         before = now
         due = now + 1 / app.frame_limit if app.frame_limit else now

@@ -6,6 +6,7 @@ at the start of a frame: a submit waits for the frame before the last, so
 that one frame at most is in flight while the next is recorded.
 """
 
+import concurrent.futures
 import itertools
 import time
 import weakref
@@ -54,6 +55,11 @@ class Frame:
     def is_done(self) -> bool:
         """Whether the render thread has executed it."""
         return self._future.done()
+
+    def is_done_within(self, timeout: float) -> bool:
+        """Whether it has been executed, or is ``timeout`` seconds from now."""
+        done, _ = concurrent.futures.wait([self._future], timeout)
+        return bool(done)
 
     def wait(self) -> FrameCounters:
         """Return when it has been executed; raise what it raised."""
@@ -258,6 +264,14 @@ class GraphicsDevice:
         if paced:
             self._in_flight = frame
         return frame
+
+    def is_ready(self, timeout: float = 0.0) -> bool:
+        """Whether :meth:`submit` would not have to wait.
+
+        Waits up to ``timeout`` seconds for that itself.
+        """
+        frame = self._in_flight
+        return frame is None or frame.is_done_within(timeout)
 
     def submit_and_present(
         self, commands: CommandList, *, sort: bool = True
