@@ -54,6 +54,11 @@ def describe(model: Model) -> dict[str, Any]:
         "meshes": len(model.meshes),
         "primitives": len(primitives),
         "scene": _scene(model),
+        "skins": [
+            {"name": skin.name, "joints": len(skin.joints)}
+            for skin in model.skins
+        ],
+        "morph_targets": sum(mesh.target_count for mesh in model.meshes),
         "materials": [_material(material) for material in model.materials],
         "textures": textures,
         "cameras": [_camera(camera) for camera in model.cameras],
@@ -89,6 +94,12 @@ def format_description(description: dict[str, Any]) -> str:
             for corner in scene["bounds"]
         )
         lines.append(f"  bounds      ({least}) to ({greatest}) m")
+    skins, targets = description["skins"], description["morph_targets"]
+    if skins:
+        joints = sum(skin["joints"] for skin in skins)
+        lines.append(f"  skins       {len(skins)} of {joints} joints")
+    if targets:
+        lines.append(f"  morphs      {targets} targets")
     for title, key, line in (
         ("materials", "materials", _material_line),
         ("textures", "textures", _texture_line),

@@ -113,19 +113,36 @@ class Model(Struct, eq=False):
     def bounds(self, scene: int | None = None) -> Array | None:
         """The world box (2, 3), least and greatest corner, of a scene.
 
-        In metres, from the boxes of the primitives; None if the scene shows
-        nothing.
+        In metres, from the boxes of the primitives, and with skins and
+        morph targets as the file has them; None if the scene shows nothing.
         """
         nodes, meshes = self.instances(scene)
         boxes = np.array([_box(mesh) for mesh in self.meshes])
         shown = np.array([bool(mesh.primitives) for mesh in self.meshes])
         if not len(nodes) or not shown[meshes].any():
             return None
-        kept = shown[meshes]
-        world = self.nodes.world_matrices()[nodes[kept]]
+        nodes, meshes = nodes[shown[meshes]], meshes[shown[meshes]]
+        world = self.nodes.world_matrices()
+        moves = np.array([bool(mesh.target_count) for mesh in self.meshes])
+        posed = moves[meshes] | np.isin(nodes, list(self.nodes.skins))
         # Matrices that overflowed along the tree give boxes without end.
         with np.errstate(invalid="ignore", over="ignore"):
-            return union_bounds(transform_bounds(world, boxes[meshes[kept]]))
+            placed = transform_bounds(
+                world[nodes[~posed]], boxes[meshes[~posed]]
+            )
+            if not posed.any():
+                return union_bounds(placed)
+            from moka.model.posed_bounds import posed_bounds
+
+            others = [
+                posed_bounds(
+                    self.nodes, world, row, self.meshes[mesh], self.skins
+                )
+                for row, mesh in zip(
+                    nodes[posed].tolist(), meshes[posed].tolist(), strict=True
+                )
+            ]
+            return union_bounds(np.concatenate([placed, others]))
 
     def _placed(self, what: NDArray[np.int32], scene: int | None) -> Placements:
         inside = np.isin(
