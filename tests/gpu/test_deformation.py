@@ -4,6 +4,7 @@ Each vertex is a point of one pixel, known by its colour. Seen in parallel
 along the three axes, depth tells each coordinate of its position.
 """
 
+import base64
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,8 +13,9 @@ import pytest
 from numpy.typing import NDArray
 
 from moka.commands.command_list import CommandList
+from moka.core.png import encode_png
 from moka.graphics.device import GraphicsDevice
-from moka.model import load_model
+from moka.model import cube, load_model, quad
 from moka.model.cameras import Orthographic
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
@@ -21,6 +23,8 @@ from moka.renderer.surface_values import unpack_values
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
 from tests.support.characters import Character
+from tests.support.gltf_file import GltfFile
+from tests.support.plain_device import open_plain_device
 
 pytestmark = pytest.mark.gpu
 
@@ -138,3 +142,112 @@ def test_a_million_metres_away_detail_stays(stage: Stage) -> None:
     character = Character(joints=8, far=2.0**20, seed=4)
     stage.scene.add(load_model(character.glb()))
     check(stage, character, rounding=4e-6)
+
+
+def test_meshes_share_buffers_textures_and_a_skeleton(stage: Stage) -> None:
+    """Lists of targets and vertices of the second begin somewhere else."""
+    file = GltfFile()
+    characters = [
+        Character(joints=5, targets=4, vertices=90, seed=seed)
+        for seed in (1, 2)
+    ]
+    for character in characters:
+        character.add_to(file)
+    # Both follow the joints of the first, each with matrices of its own.
+    skins = file.document["skins"]
+    skins[1]["joints"] = skins[0]["joints"]
+    characters[1].local = characters[0].local
+    characters[1].parents = characters[0].parents
+    model = load_model(file.glb())
+    for shown in (0, 1):
+        placed = stage.scene.add(model)
+        other = np.flatnonzero(model.nodes.mesh >= 0)[1 - shown]
+        placed.node(int(other)).visible = False
+        check(stage, characters[shown])
+        placed.remove()
+
+
+def test_copies_have_poses_of_their_own(stage: Stage) -> None:
+    character = Character(joints=4, targets=3, seed=7)
+    model = load_model(character.glb())
+    copies = [stage.scene.add(model) for _ in range(3)]
+    mesh = int(np.flatnonzero(model.nodes.mesh >= 0)[0])
+    character.weights = np.array([0.25, -0.5, 1.0])
+    for number, copy in enumerate(copies):
+        copy.visible = number == 1
+        assert copy.morph_weights is not None
+        copy.morph_weights.set(mesh, character.weights * (number == 1))
+    root = model.nodes.names.index("joint 0")
+    character.local[0, :3, 3] += (0.5, 0, 0)
+    copies[1].node(root).local_matrix = character.local[0]
+    check(stage, character)
+
+
+def test_without_newer_features_of_opengl() -> None:
+    with open_plain_device() as device:
+        stage = Stage(device)
+        for seed in (8, 9):
+            character = Character(joints=3, targets=3, vertices=60, seed=seed)
+            placed = stage.scene.add(load_model(character.glb()))
+            check(stage, character, rounding=4e-6)
+            placed.visible = False
+        stage.renderer.close()
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_mirrored_skeleton_shows_its_outside(
+    stage: Stage, mirrored: bool
+) -> None:
+    """A cube of one-sided faces: the near side is seen and faces the eye."""
+    file = GltfFile()
+    shape = cube(1.0)
+    mesh = file.mesh(shape.attributes, shape.indices)
+    count = shape.vertex_count
+    file.document["meshes"][mesh]["primitives"][0]["attributes"] |= {
+        "JOINTS_0": file.accessor(np.zeros((count, 4)), "u1"),
+        "WEIGHTS_0": file.accessor(np.tile([1.0, 0, 0, 0], (count, 1))),
+    }
+    file.document["skins"] = [{"joints": [0]}]
+    file.node(scale=[-1 if mirrored else 1, 1, 1])
+    file.node(mesh=mesh, skin=0)
+    stage.scene.add(load_model(file.glb()))
+    for axis, turn in enumerate(VIEWS):
+        layers = stage.values(look_along(axis, np.zeros(3), 1.0))
+        middle = SIZE // 2
+        assert layers["depth"][middle, middle] == pytest.approx(1.5, abs=1e-5)
+        np.testing.assert_allclose(
+            layers["normal"][middle, middle], turn[:, 2], atol=1e-6
+        )
+
+
+def test_morphed_coordinates_read_another_part_of_a_texture(
+    stage: Stage,
+) -> None:
+    """Left half red, right half green; a target moves u by a half."""
+    file = GltfFile()
+    shape = quad(2.0)
+    texture = np.zeros((8, 8, 3), np.uint8)
+    texture[:, :4, 0] = texture[:, 4:, 1] = 255
+    coordinates = 0.25 + 0 * shape.attributes["TEXCOORD_0"]
+    mesh = file.mesh(
+        {**shape.attributes, "TEXCOORD_0": coordinates}, shape.indices
+    )
+    primitive = file.document["meshes"][mesh]["primitives"][0]
+    moved = np.zeros((shape.vertex_count, 2))
+    moved[:, 0] = 0.5
+    primitive["targets"] = [{"TEXCOORD_0": file.accessor(moved)}]
+    primitive["material"] = 0
+    image = base64.b64encode(encode_png(texture)).decode()
+    file.document["images"] = [{"uri": f"data:image/png;base64,{image}"}]
+    file.document["textures"] = [{"source": 0}]
+    file.document["materials"] = [
+        {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}
+    ]
+    file.node(mesh=mesh)
+    placed = stage.scene.add(load_model(file.glb()))
+    assert placed.morph_weights is not None
+    for weight, colour in ((0.0, (1, 0, 0)), (1.0, (0, 1, 0))):
+        placed.morph_weights.set(0, [weight])
+        layers = stage.values(look_along(2, np.zeros(3), 1.0))
+        middle = layers["albedo"][SIZE // 2, SIZE // 2]
+        np.testing.assert_allclose(middle, colour, atol=1e-3)

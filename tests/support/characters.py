@@ -163,6 +163,7 @@ class Character:
                     if parent == node
                 ]
                 file.node(
+                    name=f"joint {node}",
                     matrix=local.T.reshape(-1).tolist(),
                     **({"children": children} if children else {}),
                 )
