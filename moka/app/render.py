@@ -1,15 +1,17 @@
 """One picture, from a file to pixels: the work behind ``moka render``."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from moka.app.render_session import (
     RenderRequest,
     RenderSession,
     request_of,
 )
-from moka.core.image import Image
 from moka.core.statistics import Statistics
+
+if TYPE_CHECKING:
+    from moka.core.image import Image
 
 __all__ = ["render", "render_request"]
 
@@ -44,7 +46,7 @@ def render(
     full_textures: bool = False,
     backend: str = "auto",
     cache: bool = True,
-) -> Image:
+) -> "Image":
     """Render one picture headless.
 
     ``source`` is a .gltf or .glb path, the bytes of one, a pygltflib
@@ -136,8 +138,8 @@ def render_request(
     want_display: bool,
     debug: bool = False,
     cache: bool = False,
-    deliver: Callable[[Image], None] | None = None,
-) -> Image:
+    deliver: "Callable[[Image], None] | None" = None,
+) -> "Image":
     """Make the picture of ``request``; see :func:`render` for its errors.
 
     Only what is wanted is read back: linear ``pixels``, the tone mapped

@@ -2,28 +2,31 @@
 
 Reading the environment and decoding images run in worker threads while the
 render thread makes the context and compiles; they meet at the first frame.
+Imports are in the order of this work: none above takes long, so that the
+driver loads while NumPy is imported.
 """
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
+from msgspec import Struct
 
 from moka.core.aov import parse_aovs
 from moka.core.errors import OptionError
-from moka.core.image import Image
 from moka.core.option_text import LARGEST_SIDE
 from moka.core.statistics import Statistics
 from moka.renderer.quality import settings_of_quality
 from moka.renderer.settings import RenderSettings
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from moka.commands.commands import Readback
+    from moka.core.image import Image
     from moka.graphics.device import Frame, GraphicsDevice
     from moka.lighting.environment import Environment
     from moka.model.model import Model
@@ -35,8 +38,7 @@ if TYPE_CHECKING:
 __all__ = ["PendingImage", "RenderRequest", "RenderSession", "request_of"]
 
 
-@dataclass(frozen=True, slots=True)
-class RenderRequest:
+class RenderRequest(Struct, frozen=True):
     """All that decides a picture; the options of ``moka render``.
 
     ``source`` is a path, the bytes of a file, a pygltflib document, a
@@ -57,7 +59,7 @@ class RenderRequest:
     background: Any = "environment"
     camera: Any = None
     size: tuple[int, int] = (1280, 720)
-    settings: RenderSettings = field(default_factory=RenderSettings)
+    settings: RenderSettings = RenderSettings()
     backend: str = "auto"
     aovs: tuple[str, ...] = ()
     full_textures: bool = False
@@ -79,7 +81,7 @@ def request_of(
     Raises OptionError for values that mean nothing, TypeError for options
     that there are not.
     """
-    names = {entry.name for entry in fields(RenderRequest)}
+    names = set(RenderRequest.__struct_fields__)
     of_request = {name: options.pop(name) for name in names & options.keys()}
     settings = settings_of_quality(quality, float_output=True, **options)
     return RenderRequest(
@@ -104,7 +106,7 @@ class PendingImage:
         self._display = display
         self._values = values
 
-    def wait(self) -> Image:
+    def wait(self) -> "Image":
         """The picture, when the GPU has made it; raises what it raised."""
         self._session.count(self._frame)
         request = self._session.request
@@ -263,8 +265,12 @@ def _image(
     radiance: "Readback | None",
     display: "Readback | None",
     values: "Mapping[str, Readback] | None",
-) -> Image:
+) -> "Image":
     """What was read back, top row first."""
+    import numpy as np
+
+    from moka.core.image import Image
+
     pixels = None
     if radiance is not None:
         assert radiance.data is not None
@@ -362,9 +368,11 @@ def _choose_camera(request: RenderRequest, scene: "Scene") -> "Camera":
 
 
 def _over_background(
-    pixels: NDArray[np.float32], background: Any
-) -> NDArray[np.float32]:
+    pixels: "NDArray[np.float32]", background: Any
+) -> "NDArray[np.float32]":
     """Radiance over a background colour, as the display pass has it."""
+    import numpy as np
+
     if isinstance(background, str):
         return np.ascontiguousarray(pixels)
     under = np.append(np.asarray(background, np.float32), np.float32(1))
@@ -374,7 +382,7 @@ def _over_background(
 def _check_size(size: tuple[int, int]) -> None:
     if (
         not all(
-            isinstance(side, int | np.integer) and 1 <= side <= LARGEST_SIDE
+            hasattr(side, "__index__") and 1 <= side <= LARGEST_SIDE
             for side in size
         )
         or len(size) != 2

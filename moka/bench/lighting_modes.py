@@ -1,7 +1,9 @@
 """The modes of lighting that ``moka bench accuracy`` compares."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
+
+from msgspec.structs import replace
 
 from moka.renderer.convergence import Schedule
 from moka.renderer.quality import QUALITIES, settings_of_quality
@@ -94,8 +96,7 @@ def lighting_modes(
         for count in ((16, 64, 256) if quick else (16, 64, 256, 1024))
     ]
     return tuple(
-        LightingMode(name, replace(base, **knobs))  # type: ignore[arg-type]
-        for name, knobs in sweep
+        LightingMode(name, replace(base, **knobs)) for name, knobs in sweep
     )
 
 

@@ -3,10 +3,14 @@
 import argparse
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from moka.cli.picture_options import add_picture_arguments, picture_request
 from moka.core.errors import OptionError
 from moka.core.option_text import count, number
+
+if TYPE_CHECKING:
+    from moka.core.image import Image
 
 __all__ = ["add_arguments", "execute"]
 
@@ -122,14 +126,13 @@ def execute(arguments: argparse.Namespace) -> int:
             raise OptionError(f"--{option}: needs --frames or --turntable")
 
     from moka.app.render import render_request
-    from moka.core.image import Image
     from moka.core.statistics import Statistics, write_statistics
 
     statistics = Statistics(arguments.started)
     statistics.add_time("import", time.perf_counter() - arguments.started)
     suffixes = {path.suffix.lower() for path in outputs}
 
-    def save(image: Image) -> None:
+    def save(image: "Image") -> None:
         with statistics.stage("encode"):
             image.save_all(outputs, half=arguments.half)
 

@@ -4,7 +4,6 @@ Nothing is opened before something needs the texels, so that a texture which
 no visible material samples costs nothing.
 """
 
-import hashlib
 from functools import cached_property
 from pathlib import Path
 
@@ -57,4 +56,6 @@ class EncodedImage:
         if self.path is not None:
             return str(self.path.resolve())
         assert self._data is not None
-        return hashlib.blake2b(self._data, digest_size=16).hexdigest()
+        from hashlib import blake2b
+
+        return blake2b(self._data, digest_size=16).hexdigest()

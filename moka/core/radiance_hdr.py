@@ -8,11 +8,11 @@ import math
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.atomic_file import image_file
@@ -32,8 +32,7 @@ _MOST_PIXELS = 1 << 28
 _RESOLUTION = re.compile(rb"([+-])([XY]) +(\d{1,9}) +([+-])([XY]) +(\d{1,9})")
 
 
-@dataclass(frozen=True, slots=True)
-class _Header:
+class _Header(Struct, frozen=True):
     """What stands before the pixels, which begin at ``end``.
 
     ``exposure`` is what radiance was multiplied by, per channel. Scanlines

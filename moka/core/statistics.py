@@ -5,7 +5,6 @@ writes. Stages may overlap, since decoding runs in worker threads while the
 render thread compiles, so that their sum can exceed the total.
 """
 
-import json
 import sys
 import threading
 import time
@@ -83,6 +82,8 @@ class Statistics:
 
 def write_statistics(statistics: Statistics, path: Path) -> None:
     """Write the statistics as JSON; raises MokaError if it cannot."""
+    import json
+
     text = json.dumps(statistics.as_dict(), indent=2) + "\n"
     try:
         path.write_text(text, encoding="utf-8")

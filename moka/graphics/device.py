@@ -6,6 +6,8 @@ at the start of a frame: a submit waits for the frame before the last, so
 that one frame at most is in flight while the next is recorded.
 """
 
+from __future__ import annotations
+
 import concurrent.futures
 import itertools
 import time
@@ -13,29 +15,32 @@ import weakref
 from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from numpy.typing import NDArray
-
-from moka.backend.protocol import (
-    Backend,
-    BackendInfo,
-    FrameCounters,
-    TextureData,
-)
-from moka.commands.command_list import CommandList
-from moka.commands.descriptors import (
-    BindGroupDescriptor,
-    BufferDescriptor,
-    FramebufferDescriptor,
-    MeshDescriptor,
-    ProgramDescriptor,
-    TextureDescriptor,
-)
 from moka.commands.handles import Handle, HandleAllocator, ResourceKind
 from moka.core.errors import DeviceError
 from moka.graphics.render_thread import RenderThread
-from moka.graphics.shader_source import explain_log
+
+# Of types alone: whoever opens a device need not wait for NumPy, which can be
+# imported while the driver loads.
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from moka.backend.protocol import (
+        Backend,
+        BackendInfo,
+        FrameCounters,
+        TextureData,
+    )
+    from moka.commands.command_list import CommandList
+    from moka.commands.descriptors import (
+        BindGroupDescriptor,
+        BufferDescriptor,
+        FramebufferDescriptor,
+        MeshDescriptor,
+        ProgramDescriptor,
+        TextureDescriptor,
+    )
 
 __all__ = ["Frame", "GraphicsDevice"]
 
@@ -46,7 +51,7 @@ class Frame:
     """A submitted command list: wait for it, then read its counters."""
 
     def __init__(
-        self, thread: RenderThread, future: "Future[FrameCounters]"
+        self, thread: RenderThread, future: Future[FrameCounters]
     ) -> None:
         self._thread = thread
         self._future = future
@@ -92,7 +97,7 @@ class GraphicsDevice:
         *,
         device: int | None = None,
         debug: bool = False,
-    ) -> "GraphicsDevice":
+    ) -> GraphicsDevice:
         """A headless device.
 
         ``backend`` is ``auto``, ``egl``, ``osmesa`` or ``window`` (hidden),
@@ -104,17 +109,19 @@ class GraphicsDevice:
 
         def open_backend() -> Backend:
             from moka.backend.contexts import open_context
-            from moka.backend.moderngl_backend import ModernGLBackend
 
             start = time.perf_counter()
             context = open_context(backend, device=device, debug=debug)
+            from moka.backend.moderngl_backend import ModernGLBackend
+            from moka.graphics.shader_source import explain_log
+
             opened = ModernGLBackend(context, explain_log)
             opened.add_time("context", time.perf_counter() - start)
             return opened
 
         return cls(open_backend)
 
-    def __enter__(self) -> "GraphicsDevice":
+    def __enter__(self) -> GraphicsDevice:
         return self
 
     def __exit__(self, _kind: object, error: object, _: object) -> None:

@@ -9,6 +9,8 @@ does anything. No wait is without a bound: whoever waits looks twice a second
 whether the thread is alive and gives up after ``timeout`` seconds.
 """
 
+from __future__ import annotations
+
 import contextlib
 import queue
 import threading
@@ -16,10 +18,12 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
-from moka.backend.protocol import Backend
 from moka.core.errors import DeviceError
+
+if TYPE_CHECKING:
+    from moka.backend.protocol import Backend
 
 __all__ = ["RenderThread"]
 
@@ -122,7 +126,7 @@ class RenderThread:
         """Return when the context is made; raise what making it raised."""
         self._wait(self._worker.opened)
 
-    def post(self, function: Callable[[Backend], T]) -> "Future[T]":
+    def post(self, function: Callable[[Backend], T]) -> Future[T]:
         """Run ``function`` on the thread later; see the module's text."""
         return self._enqueue(_Job(function, is_awaited=False))
 
@@ -130,7 +134,7 @@ class RenderThread:
         """Run ``function`` on the thread and return what it returns."""
         return self.wait(self._enqueue(_Job(function, is_awaited=True)))
 
-    def wait(self, future: "Future[T]") -> T:
+    def wait(self, future: Future[T]) -> T:
         """The result of a posted job; raises DeviceError after the bound."""
         try:
             return self._wait(future)
@@ -147,7 +151,7 @@ class RenderThread:
             self._thread.join(timeout)
         return not self._thread.is_alive()
 
-    def _enqueue(self, job: "_Job[T]") -> "Future[T]":
+    def _enqueue(self, job: _Job[T]) -> Future[T]:
         if self._closed:
             raise DeviceError("the graphics device is closed")
         if self._worker.opened.done():
@@ -161,7 +165,7 @@ class RenderThread:
         if failure is not None:
             raise failure
 
-    def _wait(self, future: "Future[T]") -> T:
+    def _wait(self, future: Future[T]) -> T:
         deadline = time.monotonic() + self._timeout
         while True:
             try:

@@ -8,7 +8,6 @@ Block Layout").
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from typing import Any
@@ -62,8 +61,7 @@ class Parameter(Struct, frozen=True):
     count: int = 0
 
 
-@dataclass(frozen=True)
-class UniformLayout:
+class UniformLayout(Struct, frozen=True, dict=True):
     """The parameters of a uniform block, or of one row of an array of them.
 
     As an array (``rows`` > 0) the block is ``Name { NameRow rows[N]; }``.

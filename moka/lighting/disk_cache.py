@@ -14,7 +14,6 @@ is as good as absent and is replaced. Reading maps the file into memory,
 which stays valid when another process replaces or deletes it.
 """
 
-import json
 import logging
 import mmap
 import os
@@ -23,11 +22,12 @@ import time
 import zlib
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.atomic_file import atomic_file
@@ -49,8 +49,7 @@ _ABANDONED_SECONDS = 3600.0
 Arrays = Mapping[str, NDArray[Any]]
 
 
-@dataclass(frozen=True, slots=True)
-class Usage:
+class Usage(Struct, frozen=True):
     """How many entries there are and how many bytes they fill."""
 
     entries: int
@@ -107,7 +106,12 @@ class DiskCache:
             return None
         try:
             arrays = _parse(data, key)
-        except (ValueError, KeyError, TypeError) as error:
+        except (
+            ValueError,
+            KeyError,
+            TypeError,
+            msgspec.DecodeError,
+        ) as error:
             _LOGGER.info("%s: is no entry of the cache: %s", path, error)
             return None
         with suppress(OSError):
@@ -190,7 +194,7 @@ def _pack(key: str, arrays: Arrays) -> tuple[bytes, list[bytes | memoryview]]:
         padding = -array.nbytes % _ALIGNMENT
         contents += [array.reshape(-1).view(np.uint8).data, bytes(padding)]
         offset += array.nbytes + padding
-    header = json.dumps({"key": key, "size": offset, "arrays": places}).encode()
+    header = msgspec.json.encode({"key": key, "size": offset, "arrays": places})
     # Spaces are nothing to JSON; the arrays begin at a whole line of a cache.
     header += b" " * (-(_PREFIX + len(header)) % _ALIGNMENT)
     rest = len(header).to_bytes(4, "little") + header
@@ -210,7 +214,7 @@ def _parse(data: mmap.mmap, key: str) -> dict[str, NDArray[Any]]:
     if zlib.crc32(view[magic + 4 :]) != checksum:
         raise ValueError("it is damaged")
     start = _PREFIX + int.from_bytes(view[magic + 4 : _PREFIX], "little")
-    header = json.loads(bytes(view[_PREFIX:start]))
+    header = msgspec.json.decode(view[_PREFIX:start])
     if header["key"] != key:
         raise ValueError("it is that of another key")
     return {

@@ -6,16 +6,17 @@ from which every approximation that follows would suffer; as a light it is
 exact.
 """
 
-import hashlib
 import logging
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import force_setattr
 from numpy.typing import NDArray
 
 from moka.core.errors import EnvironmentMapError, ImageFileError
@@ -35,8 +36,7 @@ BRIGHTEST = 1e30
 BUILT_IN = ("studio", "sky", "furnace", "none")
 
 
-@dataclass(frozen=True, slots=True)
-class Sun:
+class Sun(Struct, frozen=True):
     """A small bright disc of the sky, as a light.
 
     ``direction`` is a unit vector towards it, ``irradiance`` linear Rec.709,
@@ -55,8 +55,7 @@ class Sun:
             raise ValueError("the direction of a sun is a unit vector")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Environment:
+class Environment(Struct, frozen=True, eq=False, dict=True):
     """The radiance that comes from every direction.
 
     ``pixels`` is an equirectangular map, float32 (H, 2H, 3), top row first,
@@ -71,7 +70,6 @@ class Environment:
     pixels: NDArray[np.float32]
     suns: tuple[Sun, ...] = ()
     name: str = "environment"
-    _digest: bytes = field(default=b"", init=False, repr=False)
 
     def __post_init__(self) -> None:
         pixels = np.asarray(self.pixels)
@@ -90,7 +88,7 @@ class Environment:
             pixels = np.ascontiguousarray(pixels, dtype=np.float32)
         pixels = _sanitised(pixels, self.name).view()
         pixels.flags.writeable = False
-        object.__setattr__(self, "pixels", pixels)
+        force_setattr(self, "pixels", pixels)
 
     @classmethod
     def uniform(
@@ -99,18 +97,17 @@ class Environment:
         """The same linear Rec.709 ``radiance`` from everywhere."""
         return cls(np.array([[radiance]], np.float32), name=name)
 
-    @property
+    @cached_property
     def digest(self) -> bytes:
         """SHA-256 of all the light it sends; computed when first asked for.
 
         Processors have instructions for it, with which it reads 2 GB/s.
         """
-        if not self._digest:
-            parts = repr((self.pixels.shape, self.suns))
-            state = hashlib.sha256(parts.encode())
-            state.update(self.pixels.data.cast("B"))
-            object.__setattr__(self, "_digest", state.digest())
-        return self._digest
+        from hashlib import sha256
+
+        state = sha256(repr((self.pixels.shape, self.suns)).encode())
+        state.update(self.pixels.data.cast("B"))
+        return state.digest()
 
     @property
     def is_uniform(self) -> bool:

@@ -1,8 +1,7 @@
 """What is asked for of an environment, and what it then is."""
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.lighting.environment import Environment, Sun
@@ -11,8 +10,7 @@ from moka.lighting.environment_maps import EnvironmentMaps
 __all__ = ["EnvironmentLighting", "LightingRequest"]
 
 
-@dataclass(frozen=True, slots=True)
-class LightingRequest:
+class LightingRequest(Struct, frozen=True):
     """What is asked for of an environment.
 
     ``most_suns`` may become lights; ``irradiance_as`` is ``auto``, ``sh`` or
@@ -32,8 +30,7 @@ class LightingRequest:
     sampled: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EnvironmentLighting:
+class EnvironmentLighting(Struct, frozen=True, eq=False):
     """An environment as a frame uses it.
 
     ``harmonics`` are coefficients (9, 3) of irradiance, where no cube of

@@ -1,6 +1,6 @@
 """The textures that one environment is on the GPU, and how they are read."""
 
-from dataclasses import dataclass, field
+from msgspec import Struct
 
 from moka.commands.descriptors import (
     MipmapMode,
@@ -33,8 +33,7 @@ SOURCE_SAMPLER = SamplerDescriptor(
 CUBE_FORMAT = PixelFormat.RGBA32F
 
 
-@dataclass(slots=True)
-class EnvironmentMaps:
+class EnvironmentMaps(Struct):
     """What is there of one environment; None where nothing asked for it.
 
     ``map`` is the equirectangular map with its suns, ``specular`` the
@@ -53,7 +52,7 @@ class EnvironmentMaps:
     radiance: Handle | None = None
     radiance_levels: int = 1
     importance: Handle | None = None
-    resources: list[Handle] = field(default_factory=list)
+    resources: list[Handle] = []
 
     @property
     def lights_surfaces(self) -> bool:

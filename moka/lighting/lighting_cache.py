@@ -7,7 +7,6 @@ back to the last bit, so that pictures with and without the cache are the
 same.
 """
 
-import hashlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -107,8 +106,10 @@ class LightingCache:
         """A key of ``parts``, of this driver and of how moka makes things."""
         info = self._device.info
         driver = (info.kind, info.vendor, info.renderer, info.version)
+        from hashlib import blake2b
+
         text = repr((parts, driver, _makers()))
-        return hashlib.blake2b(text.encode(), digest_size=20).hexdigest()
+        return blake2b(text.encode(), digest_size=20).hexdigest()
 
     def _uploaded(self, arrays: Arrays) -> EnvironmentLighting:
         maps = EnvironmentMaps()
@@ -188,7 +189,9 @@ def _makers() -> str:
     Coarse on purpose: an edit too many costs a preintegration, one that was
     missed would be a wrong picture.
     """
-    digest = hashlib.blake2b(f"{__version__} {np.__version__}".encode())
+    from hashlib import blake2b
+
+    digest = blake2b(f"{__version__} {np.__version__}".encode())
     modules = Path(__file__).parent.glob("*.py")
     shaders = shader_folder().rglob("*.*")
     for path in sorted((*modules, Path(solid_angle.__file__), *shaders)):

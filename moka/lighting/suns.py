@@ -7,9 +7,8 @@ environment is split into a base map of low dynamic range and suns, which
 together have exactly the flux of the map, channel by channel.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.lighting.environment import Environment, Sun
@@ -50,8 +49,7 @@ _LEAST_PEAK = _LEAST_SHARE * 4.0 * np.pi / _LARGEST
 _ROWS_OF_UNIFORM = 128
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SplitEnvironment:
+class SplitEnvironment(Struct, frozen=True, eq=False):
     """An environment twice: as a whole, and as a base and suns.
 
     ``full`` is the map, ``base`` what is left when suns that were found in it

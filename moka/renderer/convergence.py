@@ -1,9 +1,9 @@
 """When sampling may stop: batches, tiles and their errors; no GPU here."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 __all__ = ["TILE", "Convergence", "Schedule", "rectangles"]
@@ -25,8 +25,7 @@ _FEWEST_BATCHES = 16
 _BATCHES_TO_TRUST = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Schedule:
+class Schedule(Struct, frozen=True):
     """``batches`` runs of ``frames``, each frame with ``samples`` a pixel."""
 
     samples: int

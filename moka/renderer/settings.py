@@ -1,10 +1,19 @@
 """How a picture is made: the choices of the command line as one value."""
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from moka.core.errors import OptionError
 
-__all__ = ["BRDFS", "DIFFUSE_MODELS", "IBL_MODES", "RenderSettings"]
+__all__ = [
+    "BRDFS",
+    "DIFFUSE_MODELS",
+    "IBL_MODES",
+    "TONE_MAPS",
+    "RenderSettings",
+]
+
+# Those of moka.core.tone_map, which an option should not have to import.
+TONE_MAPS = ("neutral", "aces", "agx", "reinhard", "exponential", "none")
 
 BRDFS = ("gltf", "karis", "blinn-phong")
 DIFFUSE_MODELS = ("lambert", "oren-nayar", "burley")
@@ -20,8 +29,7 @@ MOST_IBL_SAMPLES = 256
 MOST_REFERENCE_SAMPLES = 1 << 24
 
 
-@dataclass(frozen=True, slots=True)
-class RenderSettings:
+class RenderSettings(Struct, frozen=True):
     """Settings of a :class:`moka.Renderer`.
 
     ``exposure`` is in stops and applies before the tone map, never to float
@@ -59,9 +67,7 @@ class RenderSettings:
 
     def __post_init__(self) -> None:
         """Raise OptionError for a value that means nothing."""
-        from moka.core.tone_map import TONE_MAPS
-
-        _check("tone map", self.tone_map, tuple(TONE_MAPS))
+        _check("tone map", self.tone_map, TONE_MAPS)
         _check("BRDF", self.brdf, BRDFS)
         _check("diffuse model", self.diffuse, DIFFUSE_MODELS)
         _check("irradiance", self.irradiance, IRRADIANCE)

@@ -7,9 +7,10 @@ The interface is that of OpenGL 4.3 and KHR_debug; drivers that have neither
 import ctypes
 from collections.abc import Callable
 from ctypes import c_char_p, c_int, c_uint, c_void_p
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any
+
+from msgspec import Struct
 
 __all__ = ["DebugLog", "DebugMessage", "Severity"]
 
@@ -47,8 +48,7 @@ class Severity(Enum):
     LOW = 0x9148
 
 
-@dataclass(frozen=True, slots=True)
-class DebugMessage:
+class DebugMessage(Struct, frozen=True):
     """One message; ``is_error`` for GL errors and undefined behaviour."""
 
     severity: Severity
