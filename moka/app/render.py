@@ -38,6 +38,7 @@ def render(
     quality: str = "balanced",
     suns: str | int | None = None,
     irradiance: str | None = None,
+    reflections: str | None = None,
     ibl: str | None = None,
     ibl_samples: int | None = None,
     reference_samples: int | None = None,
@@ -69,12 +70,13 @@ def render(
     ``blinn-phong``, ``diffuse`` ``lambert``, ``oren-nayar`` or ``burley``;
     ``multiscatter`` compensates the energy that single scattering loses
     (Turquin 2019). ``quality`` is ``fast``, ``balanced`` or ``best``: how the
-    environment lights, of which the next four change what is not None.
+    environment lights, of which the next five change what is not None.
     ``suns`` is how many bright, compact parts of the
     environment are lit as lights with the exact BRDF: ``auto``, ``off`` or
     a number at most. ``irradiance`` is ``sh`` (nine spherical harmonics,
     Ramamoorthi and Hanrahan 2001), ``cube``, or ``auto``, which decides by
-    the error of the former. ``ibl`` is how the environment lights:
+    the error of the former. ``reflections`` is ``full``, prefiltered as fine
+    as the map, or ``half`` of that. ``ibl`` is how the environment lights:
     ``split-sum``; ``filtered``, with ``ibl_samples`` view-dependent samples
     a pixel; ``reference``, which integrates it until ``reference_samples``
     or an estimated relative standard error of ``max_error``. ``aov`` names
@@ -113,6 +115,7 @@ def render(
         quality=quality,
         suns=suns,
         irradiance=irradiance,
+        reflections=reflections,
         ibl=ibl,
         ibl_samples=ibl_samples,
         reference_samples=reference_samples,

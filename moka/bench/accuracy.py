@@ -79,10 +79,11 @@ def execute(arguments: argparse.Namespace) -> int:
 
     check_output(arguments.json, arguments.plot)
     if arguments.plot:
-        # Better now than after minutes of measuring.
-        from moka.bench.accuracy_plot import plot_accuracy, require_matplotlib
+        from moka.bench.accuracy_plot import plot_accuracy
+        from moka.bench.plot import new_figure
 
-        require_matplotlib()
+        # What is missing is said now and not after minutes of measuring.
+        new_figure((1.0, 1.0))
     grid = _grid(arguments)
     results, driver, timed_size = _measure(arguments, grid)
     print("times of {} x {} pixels on {}".format(*timed_size, driver))

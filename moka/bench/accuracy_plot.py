@@ -5,29 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from moka.bench.accuracy_results import Point, UnderEnvironment, mean_points
-from moka.core.errors import OptionError
+from moka.bench.plot import new_figure, save_figure
 
-__all__ = ["plot_accuracy", "require_matplotlib"]
+__all__ = ["plot_accuracy"]
 
 _MARKERS = {"split-sum": "o", "filtered": "s", "reference": "^"}
 # Points from a ring to its name; two of the rings nearly meet.
 _BESIDE = {"fast": (-30, -3), "balanced": (-12, -17), "best": (-8, -17)}
-_WIDTH_INCHES = 9.0
-_DPI = 100
-
-
-def require_matplotlib() -> Any:
-    """Matplotlib's class Figure: no window and no state of pyplot.
-
-    Raises OptionError where it is missing.
-    """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise OptionError(
-            "a plot needs the package matplotlib: pip install 'moka-pbr[bench]'"
-        ) from error
-    return Figure
+_INCHES = (9.0, 6.75)
 
 
 def plot_accuracy(results: Sequence[UnderEnvironment], path: Path) -> None:
@@ -37,9 +22,7 @@ def plot_accuracy(results: Sequence[UnderEnvironment], path: Path) -> None:
     OptionError where Matplotlib is missing or the file cannot be written.
     """
     points = mean_points(results)
-    figure = require_matplotlib()(
-        figsize=(_WIDTH_INCHES, 0.75 * _WIDTH_INCHES), layout="constrained"
-    )
+    figure = new_figure(_INCHES)
     rows = figure.subplots(2, 2, sharex="col", sharey="row")
     for row, error, label in zip(
         rows,
@@ -55,10 +38,7 @@ def plot_accuracy(results: Sequence[UnderEnvironment], path: Path) -> None:
     rows[0][0].legend(loc="best", frameon=False, fontsize="small")
     names = ", ".join(result.title for result in results)
     figure.suptitle(f"Error and time, means over {names}", fontsize="medium")
-    try:
-        figure.savefig(path, dpi=_DPI)
-    except OSError as error:
-        raise OptionError(f"{path}: cannot write: {error.strerror}") from error
+    save_figure(figure, path)
 
 
 def _draw(axes: Any, points: list[Point], time: str, error: str) -> None:

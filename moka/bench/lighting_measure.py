@@ -80,6 +80,17 @@ class LightingBench:
         """
         return self._picture(self._truth, environment)
 
+    def errors(
+        self, environment: Environment, truth: NDArray[np.float32]
+    ) -> dict[LightingMode, SphereErrors]:
+        """Of a picture in each mode, against ``truth``."""
+        return {
+            mode: sphere_errors(
+                self._grid, truth, self._picture(renderer, environment)
+            )
+            for mode, renderer in self._renderers.items()
+        }
+
     def measure(
         self,
         environment: Environment,
@@ -87,12 +98,7 @@ class LightingBench:
         rounds: int,
     ) -> list[Measurement]:
         """Errors against ``truth``, then ``rounds`` of times, alternating."""
-        errors = {
-            mode: sphere_errors(
-                self._grid, truth, self._picture(renderer, environment)
-            )
-            for mode, renderer in self._renderers.items()
-        }
+        errors = self.errors(environment, truth)
         first, steady = self._times(environment, rounds)
         measurements = []
         for mode in self._renderers:

@@ -13,8 +13,8 @@ __all__ = ["LightingMode", "lighting_modes", "truth_settings"]
 
 # The settings that tell two choices of one mode apart.
 _KNOBS = {
-    "split-sum": ("ibl", "suns", "irradiance"),
-    "filtered": ("ibl", "suns", "irradiance", "ibl_samples"),
+    "split-sum": ("ibl", "suns", "irradiance", "reflections"),
+    "filtered": ("ibl", "suns", "irradiance", "reflections", "ibl_samples"),
     "reference": ("ibl", "reference_samples"),
 }
 
@@ -75,13 +75,19 @@ def lighting_modes(
     """
     sweep: list[tuple[str, dict[str, object]]] = [
         ("split-sum, suns off", {"suns": "off"}),
+        ("split-sum, half, sh", {"reflections": "half", "irradiance": "sh"}),
         ("split-sum, sh", {"irradiance": "sh"}),
         ("split-sum, cube", {"irradiance": "cube"}),
         ("split-sum", {}),
     ]
     if not quick:
         sweep += [
+            ("split-sum, half", {"reflections": "half"}),
             ("split-sum, 1 sun", {"suns": 1}),
+            (
+                "filtered 16, half",
+                {"ibl": "filtered", "reflections": "half"},
+            ),
             ("filtered 16, suns off", {"ibl": "filtered", "suns": "off"}),
         ]
     sweep += [

@@ -8,7 +8,9 @@ from numpy.typing import ArrayLike
 
 from moka.core.errors import OptionError
 
-__all__ = ["plot_growth", "plot_histogram"]
+__all__ = ["new_figure", "plot_growth", "plot_histogram", "save_figure"]
+
+_DPI = 100
 
 
 def plot_histogram(series: Mapping[str, ArrayLike], path: Path) -> None:
@@ -17,13 +19,13 @@ def plot_histogram(series: Mapping[str, ArrayLike], path: Path) -> None:
     Raises OptionError if Matplotlib is missing or the file cannot be
     written.
     """
-    figure = _figure((7, 2.2 * len(series)))
+    figure = new_figure((7, 2.2 * len(series)))
     axes = figure.subplots(len(series), 1, squeeze=False)[:, 0]
     for axis, (name, values) in zip(axes, series.items(), strict=True):
         axis.hist(values, bins="auto", color="0.4")
         axis.set_ylabel(name)
     axes[-1].set_xlabel("ms")
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def plot_growth(
@@ -35,7 +37,7 @@ def plot_growth(
 
     Raises OptionError as :func:`plot_histogram` does.
     """
-    figure = _figure((7, 4.5))
+    figure = new_figure((7, 4.5))
     axis = figure.subplots()
     for name, points in curves.items():
         x, middle, low, high = (
@@ -49,10 +51,14 @@ def plot_growth(
     axis.set_ylabel("ms, median and quartiles")
     axis.legend(frameon=False)
     axis.grid(which="major", color="0.9")
-    _save(figure, path)
+    save_figure(figure, path)
 
 
-def _figure(size: tuple[float, float]) -> Any:
+def new_figure(size: tuple[float, float]) -> Any:
+    """A Matplotlib figure of ``size`` inches.
+
+    Raises OptionError where Matplotlib is missing.
+    """
     try:
         # No window and no state of pyplot: a figure that is only saved.
         from matplotlib.figure import Figure
@@ -63,8 +69,9 @@ def _figure(size: tuple[float, float]) -> Any:
     return Figure(figsize=size, layout="constrained")
 
 
-def _save(figure: Any, path: Path) -> None:
+def save_figure(figure: Any, path: Path) -> None:
+    """Write it; raises OptionError where that cannot be."""
     try:
-        figure.savefig(path)
+        figure.savefig(path, dpi=_DPI)
     except OSError as error:
         raise OptionError(f"{path}: cannot write: {error.strerror}") from error

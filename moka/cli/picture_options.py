@@ -146,6 +146,13 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         "auto, which decides by their error (default: auto)",
     )
     add(
+        "--reflections",
+        metavar="SIZE",
+        help="full, as fine as the environment's map, or half, which is "
+        "prefiltered in a fraction of the time (default: full, with --quality "
+        "fast half)",
+    )
+    add(
         "--ibl",
         metavar="MODE",
         help="light of the environment: split-sum, filtered, reference "
@@ -199,6 +206,7 @@ def picture_request(
         multiscatter=arguments.multiscatter == "on",
         suns=arguments.suns,
         irradiance=arguments.irradiance,
+        reflections=arguments.reflections,
         ibl=arguments.ibl,
         ibl_samples=arguments.ibl_samples,
         reference_samples=arguments.reference_samples,
@@ -234,8 +242,8 @@ def _check_lighting(arguments: argparse.Namespace, ibl: str) -> None:
             option = name.replace("_", "-")
             raise OptionError(f"--{option}: needs --ibl {mode}")
     if ibl == "reference":
-        for option in ("suns", "irradiance"):
-            if getattr(arguments, option) not in (None, "auto"):
+        for option in ("suns", "irradiance", "reflections"):
+            if getattr(arguments, option) not in (None, "auto", "full"):
                 raise OptionError(
                     f"--{option}: --ibl reference samples the environment "
                     "as it is; leave it out"

@@ -17,7 +17,8 @@ class LightingRequest(Struct, frozen=True):
     ``cube``. ``specular`` and ``irradiance`` are what surfaces reflect, with
     ``radiance`` for filtered lighting; ``background`` is the map itself.
     With ``sampled`` the map and a table to sample it by are all: nothing is
-    looked for in it, and the environment's own suns alone are lights.
+    looked for in it, and the environment's own suns alone are lights. With
+    ``half`` cubes have half the texels along an edge.
     """
 
     environment: Environment
@@ -28,6 +29,7 @@ class LightingRequest(Struct, frozen=True):
     irradiance: bool = False
     radiance: bool = False
     sampled: bool = False
+    half: bool = False
 
 
 class EnvironmentLighting(Struct, frozen=True, eq=False):

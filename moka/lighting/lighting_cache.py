@@ -100,6 +100,7 @@ class LightingCache:
             request.specular,
             request.irradiance,
             request.radiance,
+            request.half,
         )
 
     def _key(self, *parts: object) -> str:

@@ -102,6 +102,7 @@ class LightingMaker:
             specular=request.specular,
             irradiance=request.irradiance and harmonics is None,
             radiance=request.radiance,
+            half=request.half,
         )
         return EnvironmentLighting(maps, split.suns, harmonics)
 

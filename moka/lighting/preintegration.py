@@ -72,12 +72,14 @@ class Preintegrator:
         specular: bool,
         irradiance: bool,
         radiance: bool = False,
+        half: bool = False,
     ) -> EnvironmentMaps:
         """Make what is asked for of ``environment``.
 
         ``irradiance`` asks for a cube of it; ``radiance``, with one of the
         two before, to keep the cube that they are made from. Of a uniform
-        environment there is none.
+        environment there is none. With ``half`` cubes have half as many
+        texels along an edge.
         """
         maps = EnvironmentMaps()
         pixels = environment.full
@@ -97,6 +99,7 @@ class Preintegrator:
                 specular=specular,
                 irradiance=irradiance,
                 radiance=radiance,
+                size=cube_size(len(pixels), half=half),
             )
         return maps
 
@@ -108,12 +111,12 @@ class Preintegrator:
         specular: bool,
         irradiance: bool,
         radiance: bool,
+        size: int,
     ) -> None:
         """Make the cubes of an environment whose map is there."""
         assert maps.map is not None
         passes = PreintegrationPasses(self._device, self._passes)
         height = len(environment.full)
-        size = cube_size(height)
         has_suns = environment.base is not environment.full
         base = (
             passes.scratch(upload_map(self._device, environment.base))

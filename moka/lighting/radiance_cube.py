@@ -32,14 +32,14 @@ __all__ = [
 LARGEST_CUBE = 1024
 
 
-def cube_size(map_height: int) -> int:
+def cube_size(map_height: int, *, half: bool = False) -> int:
     """Texels along a cube's edge for a map of ``map_height`` rows.
 
-    As many to the right angle as the map has at its equator, rounded up to
-    a power of two.
+    As many to the right angle as the map has at its equator, or ``half`` as
+    many, rounded up to a power of two.
     """
     # At least two levels: a mirror image, and one for all rough surfaces.
-    texels = max(map_height / 2, 2 * SMALLEST_SPECULAR)
+    texels = max(map_height / (4 if half else 2), 2 * SMALLEST_SPECULAR)
     return min(LARGEST_CUBE, 1 << math.ceil(math.log2(texels)))
 
 

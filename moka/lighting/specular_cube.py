@@ -27,8 +27,10 @@ __all__ = [
 SPECULAR_SAMPLES = 32
 MOST_SPECULAR_SAMPLES = 128
 # The level of roughness 1 has this many texels along an edge: its lobe is
-# wider than they are.
-SMALLEST_SPECULAR = 8
+# wider than they are. With 8 the errors of spheres under a studio and a beach
+# are 0.086 and 0.072 in place of 0.082 and 0.068: what counts is that there
+# are more levels for narrow lobes.
+SMALLEST_SPECULAR = 4
 
 
 def specular_level_count(size: int) -> int:

@@ -54,7 +54,7 @@ class LightSources:
         self.harmonics: NDArray[np.float64] | None = None
         self._environment: Environment | None = None
         self._suns: tuple[Sun, ...] = ()
-        self._options: tuple[str | int, str, str] = ("auto", "auto", "")
+        self._options: tuple[str | int, ...] = ()
         self._made = (False,) * 4
         self._buffers: dict[int, Handle] = {}
 
@@ -81,19 +81,21 @@ class LightSources:
         suns: str | int = "auto",
         irradiance_as: str = "auto",
         ibl: str = "split-sum",
+        reflections: str = "full",
     ) -> bool:
         """Have the maps that are asked for; whether they are new ones.
 
         ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
-        ``irradiance_as`` and ``ibl`` are RenderSettings' ``suns``,
-        ``irradiance`` and ``ibl``. Reference lighting samples the map as it
-        is, and the environment's own suns as discs.
+        ``irradiance_as``, ``ibl`` and ``reflections`` are RenderSettings'
+        ``suns``, ``irradiance``, ``ibl`` and ``reflections``. Reference
+        lighting samples the map as it is, and the environment's own suns as
+        discs.
         """
         sampled = ibl == "reference" and (specular or irradiance)
         if sampled:
             background, suns = True, MOST_SUNS
             specular = irradiance = False
-        options = (suns, irradiance_as, ibl)
+        options = (suns, irradiance_as, ibl, reflections)
         wanted = (
             (background, specular, irradiance, sampled)
             if environment is not None
@@ -120,22 +122,23 @@ class LightSources:
                         irradiance=irradiance,
                         radiance=ibl == "filtered" and specular,
                         sampled=sampled,
+                        half=reflections == "half",
                     )
                 )
         self.maps, self._suns = lighting.maps, lighting.suns
         self.harmonics = lighting.harmonics
         self._environment, self._made = environment, wanted
         self._options = options
-        self._report(is_cached=lighting.is_cached)
+        self._report(ibl, is_cached=lighting.is_cached)
         return True
 
-    def _report(self, *, is_cached: bool) -> None:
+    def _report(self, mode: str, *, is_cached: bool) -> None:
         """Say in the statistics what lights."""
         kind = "sh" if self.harmonics is not None else None
         if self.maps.irradiance is not None:
             kind = "cube"
         self._statistics.lighting.update(
-            mode=self._options[2],
+            mode=mode,
             suns=len(self._suns),
             irradiance=kind,
             prefiltered_levels=(

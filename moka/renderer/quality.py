@@ -16,7 +16,7 @@ __all__ = ["QUALITIES", "settings_of_quality"]
 #: defaults.
 QUALITIES: MappingProxyType[str, dict[str, Any]] = MappingProxyType(
     {
-        "fast": {"irradiance": "sh"},
+        "fast": {"reflections": "half", "irradiance": "sh"},
         "balanced": {},
         "best": {"ibl": "filtered", "ibl_samples": 32},
     }

@@ -334,6 +334,7 @@ class Renderer:
             suns=self.settings.suns,
             irradiance_as=self.settings.irradiance,
             ibl=self.settings.ibl,
+            reflections=self.settings.reflections,
         )
         if changed:
             self._screen.forget()

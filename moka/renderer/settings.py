@@ -18,6 +18,7 @@ TONE_MAPS = ("neutral", "aces", "agx", "reinhard", "exponential", "none")
 BRDFS = ("gltf", "karis", "blinn-phong")
 DIFFUSE_MODELS = ("lambert", "oren-nayar", "burley")
 IRRADIANCE = ("auto", "sh", "cube")
+REFLECTIONS = ("full", "half")
 
 # Each is a light in every pixel.
 MOST_SUNS = 64
@@ -40,7 +41,10 @@ class RenderSettings(Struct, frozen=True):
     ``suns`` is how many bright, compact parts of the environment become
     lights: ``auto``, ``off`` or a number at most. ``irradiance`` is what
     diffuse light is read from: spherical harmonics (``sh``), a ``cube`` map,
-    or ``auto``, which decides by the error of the former.
+    or ``auto``, which decides by the error of the former. ``reflections`` is
+    how large the prefiltered cube is: ``full``, as fine as the environment's
+    map, or ``half`` of that along an edge, which is made in a third to a half
+    of the time and shows mirrors half as sharp.
 
     ``ibl`` is how the environment lights: ``split-sum``; ``filtered``, which
     adds ``ibl_samples`` view-dependent samples; ``reference``, which
@@ -60,6 +64,7 @@ class RenderSettings(Struct, frozen=True):
     float_output: bool = False
     suns: str | int = "auto"
     irradiance: str = "auto"
+    reflections: str = "full"
     ibl: str = "split-sum"
     ibl_samples: int = DEFAULT_IBL_SAMPLES
     reference_samples: int | None = None
@@ -71,6 +76,7 @@ class RenderSettings(Struct, frozen=True):
         _check("BRDF", self.brdf, BRDFS)
         _check("diffuse model", self.diffuse, DIFFUSE_MODELS)
         _check("irradiance", self.irradiance, IRRADIANCE)
+        _check("reflections", self.reflections, REFLECTIONS)
         if self.suns not in ("auto", "off") and not (
             isinstance(self.suns, int) and 0 <= self.suns <= MOST_SUNS
         ):

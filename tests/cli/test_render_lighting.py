@@ -42,6 +42,11 @@ def fail(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
             ["--ibl", "reference", "--irradiance", "sh"],
             "--irradiance: --ibl reference",
         ),
+        (
+            ["--ibl", "reference", "--reflections", "half"],
+            "--reflections: --ibl reference",
+        ),
+        (["--reflections", "tiny"], "'tiny' is unknown; choose from full"),
     ],
 )
 def test_options_that_do_not_fit_are_named(

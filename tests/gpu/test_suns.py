@@ -178,7 +178,7 @@ def test_statistics_say_what_lights(
         "mode": "split-sum",
         "suns": suns,
         "irradiance": irradiance,
-        "prefiltered_levels": 5,
+        "prefiltered_levels": 6,
         "cached": False,
         "samples_per_pixel": 0,
         "estimated_error": None,
