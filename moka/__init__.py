@@ -38,13 +38,24 @@ if TYPE_CHECKING:
     from moka.model import Model as Model
     from moka.model import load_model as load_model
     from moka.model import save_model as save_model
+    from moka.model.animation import Animation as Animation
+    from moka.model.animation import AnimationChannel as AnimationChannel
+    from moka.model.animation import AnimationTarget as AnimationTarget
+    from moka.model.animation import Interpolation as Interpolation
     from moka.renderer.renderer import Renderer as Renderer
     from moka.renderer.settings import RenderSettings as RenderSettings
+    from moka.scene.animation_player import AnimationPlayer as AnimationPlayer
+    from moka.scene.animation_player import Playback as Playback
     from moka.scene.camera import Camera as Camera
     from moka.scene.scene import Scene as Scene
+    from moka.scene.scene_model import SceneModel as SceneModel
     from moka.scene.transform import Transform as Transform
 
 __all__ = [
+    "Animation",
+    "AnimationChannel",
+    "AnimationPlayer",
+    "AnimationTarget",
     "App",
     "Camera",
     "CommandError",
@@ -57,14 +68,17 @@ __all__ = [
     "GraphicsDevice",
     "Image",
     "ImageFileError",
+    "Interpolation",
     "Material",
     "Model",
     "ModelError",
     "MokaError",
     "OptionError",
+    "Playback",
     "RenderSettings",
     "Renderer",
     "Scene",
+    "SceneModel",
     "ShaderError",
     "Transform",
     "__version__",
@@ -77,6 +91,10 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Animation": "moka.model.animation",
+    "AnimationChannel": "moka.model.animation",
+    "AnimationPlayer": "moka.scene.animation_player",
+    "AnimationTarget": "moka.model.animation",
     "App": "moka.app.application",
     "Camera": "moka.scene.camera",
     "CommandError": "moka.core.errors",
@@ -89,14 +107,17 @@ _HOMES = {
     "GraphicsDevice": "moka.graphics.device",
     "Image": "moka.core.image",
     "ImageFileError": "moka.core.errors",
+    "Interpolation": "moka.model.animation",
     "Material": "moka.material.material",
     "Model": "moka.model",
     "ModelError": "moka.core.errors",
     "MokaError": "moka.core.errors",
     "OptionError": "moka.core.errors",
+    "Playback": "moka.scene.animation_player",
     "RenderSettings": "moka.renderer.settings",
     "Renderer": "moka.renderer.renderer",
     "Scene": "moka.scene.scene",
+    "SceneModel": "moka.scene.scene_model",
     "ShaderError": "moka.core.errors",
     "Transform": "moka.scene.transform",
     "load_environment": "moka.lighting.environment",

@@ -46,8 +46,9 @@ class App:
     which time stands still and nothing is updated; ``frame_limit``, how many
     frames are drawn per second at most; ``continuous``, whether one frame
     follows another. If not, one is drawn after an event, after
-    :meth:`request_redraw`, and until the picture is complete: an app that
-    shows what does not move costs nothing while nobody touches it.
+    :meth:`request_redraw`, while an animation plays, and until the picture
+    is complete: an app that shows what does not move costs nothing while
+    nobody touches it.
     """
 
     device: "GraphicsDevice"

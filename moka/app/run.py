@@ -174,6 +174,7 @@ def _loop(app: App, window: "Window", frames: int | None) -> None:
         is_wanted |= (
             app.take_redraw_request()
             or app.continuous
+            or (app.scene.is_animating and not app.paused)
             or not app.renderer.is_complete
         )
         now = time.perf_counter()

@@ -215,11 +215,16 @@ class Scene:
         """
         self._players[model] = player
 
+    @property
+    def is_animating(self) -> bool:
+        """Whether an animation plays, so that time changes the picture."""
+        return any(player.is_playing for player in self._players.values())
+
     def animate(self, delta: float) -> None:
         """Let ``delta`` seconds pass for all animations that play.
 
-        Nodes, weights, lights and cameras then are where these have them,
-        and may still be changed. The loop of :func:`moka.run` calls this
+        What these move is then where they have it, and may still be changed.
+        The loop of :func:`moka.run` calls this
         before each ``update``.
         """
         for player in self._players.values():

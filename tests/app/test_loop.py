@@ -11,6 +11,7 @@ from moka.app.application import GameTime
 from moka.commands.command_list import CommandList
 from moka.material.material import Material
 from moka.model import cube, model_of
+from tests.support.animated import AnimatedFile
 from tests.support.display import running_display
 
 pytestmark = [pytest.mark.window, pytest.mark.gpu]
@@ -80,6 +81,28 @@ def test_an_app_that_waits_draws_what_it_is_asked_for() -> None:
     app = run(Waiting(), frames=None)
     # The first, those after events of the window itself, and the one.
     assert 2 <= len(app.frames) <= 8
+
+
+def test_an_app_that_waits_draws_while_an_animation_plays() -> None:
+    file = AnimatedFile()
+    ends = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]
+    file.channel((0, "translation"), [0, 1], ends)
+
+    class Playing(Counting):
+        continuous = False
+
+        def load(self) -> None:
+            model = self.scene.add(moka.load_model(file.glb()))
+            model.animations.play()
+            # Or a loop that waits for nothing would never end.
+            self.ending = threading.Timer(20, self.quit)
+            self.ending.start()
+
+        def close(self) -> None:
+            self.ending.cancel()
+
+    app = run(Playing(), frames=12)
+    assert len(app.frames) == 12
 
 
 def test_a_limit_of_frames_is_kept() -> None:

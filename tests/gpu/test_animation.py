@@ -132,3 +132,53 @@ def test_the_wheels_of_the_truck_turn(assets: Path) -> None:
     assert 20 < different.sum() < 0.2 * different.size
     assert rows.min() > 32
     assert np.ptp(columns_) > 20
+
+
+@pytest.mark.assets
+@pytest.mark.parametrize(
+    ("name", "animation", "times", "share"),
+    [
+        ("Soldier.glb", "Run", (0.2, 0.45), 0.03),
+        ("Michelle.glb", "SambaDance", (3.0, 7.0), 0.03),
+        ("MorphStressTest.gltf", "TheWave", (0.3, 0.9), 0.01),
+    ],
+)
+def test_characters_and_morphs_move(
+    assets: Path,
+    name: str,
+    animation: str,
+    times: tuple[float, float],
+    share: float,
+) -> None:
+    first, second = (
+        moka.render(
+            assets / "models" / name,
+            animation=animation,
+            time=time,
+            environment="furnace",
+            size=(64, 64),
+            samples=1,
+        ).pixels
+        for time in times
+    )
+    different = (np.abs(first - second) > 0.02).any(axis=-1)
+    assert different.mean() > share
+
+
+def test_a_pose_that_is_held_is_written_once() -> None:
+    class Held(moka.App):
+        def load(self) -> None:
+            self.model = self.scene.add(moka.load_model(sliding()))
+            self.model.animations.pose("slide", 0.5)
+            self.versions: list[tuple[int, int]] = []
+
+        def update(self, time: moka.GameTime) -> None:  # noqa: ARG002
+            self.scene.update()
+            row = int(self.model.rows[0])
+            transforms = self.scene.transforms
+            self.versions.append((transforms.version, transforms.edits(row)))
+
+    app = moka.run(Held, headless=True, frames=5, size=(16, 16))
+    assert isinstance(app, Held)
+    assert len(set(app.versions)) == 1
+    assert not app.scene.is_animating

@@ -84,6 +84,7 @@ def test_a_loop_goes_around(scene: Scene, model: SceneModel) -> None:
     assert playing.time == 0.5
     assert x_of(scene, model) == 1
     assert model.animations.is_playing
+    assert scene.is_animating
 
 
 def test_without_a_loop_it_stays_at_the_end(
@@ -94,6 +95,7 @@ def test_without_a_loop_it_stays_at_the_end(
     assert playing.time == 2
     assert playing.has_ended
     assert not model.animations.is_playing
+    assert not scene.is_animating
     assert x_of(scene, model) == 4
 
 
