@@ -43,11 +43,11 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code.
 
-    ``arguments`` are those after the program's name, by default those of
-    the process, which then is ours: see :func:`run_process`.
+    ``arguments`` are those after the program's name. Without them they are
+    those of the process, which then is ours and ends: :func:`run_process`.
     """
     if arguments is None:
-        return run_process(partial(_run, sys.argv[1:], owns_process=True))
+        run_process(partial(_run, sys.argv[1:], owns_process=True))
     return _run(list(arguments))
 
 
