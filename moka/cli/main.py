@@ -21,6 +21,7 @@ STARTED = time.perf_counter()
 # Each is a module of this package, and its docstring's first line.
 _COMMANDS = {
     "render": "Render one picture of a glTF model, or of the built-in scene.",
+    "view": "Open a model in a window, to turn it around and to look into it.",
     "info": "Say what a glTF file holds and what of it moka does not draw.",
     "compare": "Compare a picture with a reference: FLIP, PSNR and RMSE.",
     "survey": "Make a blind survey of pictures, and analyse its answers.",

@@ -62,6 +62,7 @@ class Interface:
         style = imgui.get_style()
         style.scale_all_sizes(scale)
         style.font_scale_dpi = scale
+        self.scale = scale
         self._pass = InterfacePass(device)
         self._draw_data: Any = None
 

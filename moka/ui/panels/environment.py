@@ -1,0 +1,81 @@
+"""The light around the model, and how it is computed."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from moka.renderer.settings import BRDFS, DIFFUSE_MODELS, IBL_MODES
+from moka.ui.panels.panel import Panel
+from moka.ui.widgets import choice, slider
+
+if TYPE_CHECKING:
+    from moka.ui.viewer import Viewer
+
+__all__ = ["EnvironmentPanel", "LightingPanel"]
+
+_BUILT_IN = ("studio", "sky", "furnace", "none")
+
+
+class EnvironmentPanel(Panel):
+    """Which environment, how it is turned, and how bright it is."""
+
+    title = "Environment"
+    starts_open = True
+
+    def draw(self, imgui: Any, viewer: "Viewer") -> None:
+        """The widgets."""
+        scene = viewer.scene
+        name = str(viewer.environment_source)
+        names = _BUILT_IN if name in _BUILT_IN else (*_BUILT_IN, name)
+        wanted = choice(imgui, "environment", name, names)
+        if wanted != name:
+            viewer.open_environment(wanted)
+        degrees = slider(
+            imgui,
+            "rotation",
+            math.degrees(scene.environment_rotation),
+            -180,
+            180,
+            "%.0f deg",
+        )
+        scene.environment_rotation = math.radians(degrees)
+        scene.environment_intensity = slider(
+            imgui,
+            "intensity",
+            scene.environment_intensity,
+            0.01,
+            100,
+            "%.2f",
+            logarithmic=True,
+        )
+        imgui.text_disabled("drop a .hdr or .exr file to light with it")
+
+
+class LightingPanel(Panel):
+    """The terms of the BRDF and the mode of image-based lighting."""
+
+    title = "Lighting"
+
+    def draw(self, imgui: Any, viewer: "Viewer") -> None:
+        """The widgets."""
+        settings = viewer.settings
+        ibl = choice(imgui, "mode", settings.ibl, IBL_MODES)
+        brdf = choice(imgui, "BRDF", settings.brdf, BRDFS)
+        diffuse = choice(imgui, "diffuse", settings.diffuse, DIFFUSE_MODELS)
+        _, multiscatter = imgui.checkbox(
+            "multiple scattering", settings.multiscatter
+        )
+        samples = settings.ibl_samples
+        if ibl == "filtered":
+            _, samples = imgui.slider_int("samples a pixel", samples, 1, 64)
+        viewer.change_settings(
+            ibl=ibl,
+            brdf=brdf,
+            diffuse=diffuse,
+            multiscatter=multiscatter,
+            ibl_samples=samples,
+        )
+        if ibl == "reference":
+            lighting = viewer.renderer.lighting_statistics
+            imgui.text(f"{lighting['samples_per_pixel']:.0f} samples a pixel")
+            if lighting["estimated_error"] is not None:
+                imgui.text(f"error {lighting['estimated_error']:.2%}")

@@ -1,0 +1,64 @@
+"""How the picture is shown: exposure, tone map, edges, background."""
+
+from typing import TYPE_CHECKING, Any
+
+from moka.core.tone_map import TONE_MAPS
+from moka.ui.panels.panel import Panel
+from moka.ui.widgets import choice, slider
+
+if TYPE_CHECKING:
+    from moka.ui.viewer import Viewer
+
+__all__ = ["PicturePanel"]
+
+_SAMPLES = {"off": 1, "2": 2, "4": 4, "8": 8}
+
+
+class PicturePanel(Panel):
+    """Exposure, tone map, multisampling and what is behind the model."""
+
+    title = "Picture"
+    starts_open = True
+
+    def draw(self, imgui: Any, viewer: "Viewer") -> None:
+        """The widgets."""
+        settings = viewer.settings
+        exposure = slider(
+            imgui, "exposure", settings.exposure, -10, 10, "%+.2f EV"
+        )
+        tone_map = choice(
+            imgui, "tone map", settings.tone_map, tuple(TONE_MAPS)
+        )
+        names = {value: name for name, value in _SAMPLES.items()}
+        samples = choice(
+            imgui,
+            "samples",
+            names.get(settings.samples, str(settings.samples)),
+            tuple(_SAMPLES),
+        )
+        viewer.change_settings(
+            exposure=exposure,
+            tone_map=tone_map,
+            samples=_SAMPLES.get(samples, settings.samples),
+        )
+        self._background(imgui, viewer)
+
+    def _background(self, imgui: Any, viewer: "Viewer") -> None:
+        scene = viewer.scene
+        background = scene.background
+        kind = background if isinstance(background, str) else "colour"
+        wanted = choice(
+            imgui, "background", kind, ("environment", "transparent", "colour")
+        )
+        if wanted != kind:
+            scene.background = (
+                wanted if wanted != "colour" else (0.05, 0.05, 0.05)
+            )
+        if not isinstance(scene.background, str):
+            changed, colour = imgui.color_edit3(
+                "colour",
+                list(scene.background),
+                imgui.ColorEditFlags_.float | imgui.ColorEditFlags_.hdr,
+            )
+            if changed:
+                scene.background = tuple(max(c, 0.0) for c in colour)

@@ -1,0 +1,562 @@
+"""The viewer: a model in a window, and panels to look into it.
+
+It draws on demand. Whatever takes long (reading a file, writing a picture)
+is done in the background while the window answers; what goes wrong there is
+told in the window, and the picture stays as it was.
+"""
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from moka.app.application import App, GameTime
+from moka.app.command_text import command_text
+from moka.app.events import (
+    DropEvent,
+    Event,
+    KeyEvent,
+    MouseButtonEvent,
+    MouseMoveEvent,
+    ScrollEvent,
+)
+from moka.app.keys import Key, Modifiers, MouseButton
+from moka.app.render_session import RenderRequest
+from moka.commands.command_list import CommandList
+from moka.commands.commands import Readback
+from moka.commands.sort_key import SortKey
+from moka.core.errors import MokaError
+from moka.core.image import Image
+from moka.core.resources import asset_folder
+from moka.lighting.environment import Environment, load_environment
+from moka.model import Model, load_model
+from moka.renderer.settings import RenderSettings
+from moka.scene.camera import Camera
+from moka.scene.camera_choice import Orbit, choose_camera, parse_camera
+from moka.scene.scene_model import SceneModel
+from moka.ui.background_work import BackgroundWork
+from moka.ui.interface import Interface
+from moka.ui.orbit_controls import OrbitControls
+from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
+from moka.ui.panels.help import draw_help
+from moka.ui.panels.panel import Panel
+from moka.ui.panels.picture import PicturePanel
+
+__all__ = ["Viewer"]
+
+# Behind every pass of the renderer.
+PASS_INTERFACE = 6
+
+# Panels follow the pointer a frame later, and sizes of text one more.
+_FRAMES_TO_SETTLE = 3
+
+# A drag is not a click when the pointer has moved by more than this.
+_CLICK = 4.0
+
+# Distances to the target per second of flight.
+_FLIGHT = 1.0
+
+_COLUMN = 300.0
+
+MODEL_SUFFIXES = (".gltf", ".glb")
+ENVIRONMENT_SUFFIXES = (".hdr", ".exr")
+
+
+class Viewer(App):
+    """Shows what ``request`` describes, and lets a person change it all.
+
+    ``controls`` move the camera; ``model`` is what is open, None before it
+    has been read; ``selection`` the row of a node of it. ``error`` is the
+    last thing that went wrong, for a person to read.
+    """
+
+    continuous = False
+
+    def __init__(self, request: RenderRequest | None = None) -> None:
+        super().__init__()
+        self.begun = request or RenderRequest()
+        self.controls = OrbitControls()
+        self.model: SceneModel | None = None
+        self.model_source: Any = self.begun.source
+        self.environment_source: Any = self.begun.environment
+        self.selection: int | None = None
+        self.error: str | None = None
+        self.shows_panels = True
+        self.shows_help = False
+        self.panels: list[Panel] = [
+            PicturePanel(),
+            EnvironmentPanel(),
+            LightingPanel(),
+        ]
+        self.interface: Interface
+        self._work = BackgroundWork(self.request_redraw)
+        self._reads: list[tuple[list[Readback], Callable[[], None]]] = []
+        self._wants_picture: Path | None = None
+        self._settling = 0
+        self._pressed_at: tuple[float, float] | None = None
+        self._camera_number = -1
+
+    # What an App does.
+
+    def load(self) -> None:
+        """Begin to read the model and its environment."""
+        scale = self.window.content_scale if self.window else 1.0
+        self.interface = Interface(self.device, scale)
+        begun = self.begun
+        self.scene.background = begun.background
+        self.scene.environment_rotation = begun.environment_rotation
+        self.scene.environment_intensity = begun.environment_intensity
+        self.controls.apply(self.camera)
+        self.open_environment(self.environment_source)
+        self.open_model(self.model_source)
+
+    def event(self, event: Event) -> None:
+        """Panels first; what they do not want moves the camera."""
+        self._settling = _FRAMES_TO_SETTLE
+        self.interface.take(event)
+        match event:
+            case DropEvent(paths):
+                for path in paths:
+                    self.open(path)
+            case KeyEvent(pressed=True) if not self.interface.wants_keyboard:
+                self._press(event)
+            case MouseButtonEvent():
+                self._click(event)
+            case MouseMoveEvent() if not self.interface.wants_pointer:
+                self._drag(event)
+            case ScrollEvent(dy=clicks) if not self.interface.wants_pointer:
+                self.controls.zoom(clicks, self.camera, self._pointer())
+                self._look()
+
+    def update(self, time: GameTime) -> None:
+        """Take over what the background has done, and fly."""
+        try:
+            self._work.poll()
+        except MokaError as error:
+            self.error = str(error)
+        self._take_reads()
+        self._fly(time.delta)
+        if self._settling or self._reads or self._work.doing:
+            self._settling = max(self._settling - 1, 0)
+        if self._settling or self._reads:
+            self.request_redraw()
+
+    def draw(self, time: GameTime, commands: CommandList) -> None:
+        """The scene, then the panels over it."""
+        size = self._window_size()
+        pixels = self.window.framebuffer_size if self.window else self.size
+        self.renderer.size = self._picture_size(size, pixels)
+        try:
+            self.renderer.draw(self.scene, self.camera, commands)
+        except MokaError as error:
+            self.error = str(error)
+            self._remove_model()
+            self.renderer.draw(self.scene, self.camera, commands)
+        self._read_picture(commands)
+        with self.interface.frame(size, time.delta) as imgui:
+            self._draw_interface(imgui, size)
+        self.interface.draw(commands, SortKey(PASS_INTERFACE), None, pixels)
+
+    def close(self) -> None:
+        """End the work in the background."""
+        self._work.close()
+        self.interface.close()
+
+    # What a person may want of it.
+
+    @property
+    def settings(self) -> RenderSettings:
+        """How the picture is made."""
+        return self.renderer.settings
+
+    def change_settings(self, **changes: Any) -> None:
+        """Replace settings by name, if they are others than now."""
+        settings = self.renderer.settings
+        if any(getattr(settings, name) != changes[name] for name in changes):
+            self.renderer.settings = replace(settings, **changes)
+            self.request_redraw()
+
+    def open(self, path: str | os.PathLike[str]) -> None:
+        """Open a model or an environment, as its ending says."""
+        suffix = Path(path).suffix.lower()
+        if suffix in MODEL_SUFFIXES:
+            self.open_model(path)
+        elif suffix in ENVIRONMENT_SUFFIXES:
+            self.open_environment(path)
+        else:
+            self.error = (
+                f"{path}: neither a model ({', '.join(MODEL_SUFFIXES)}) nor "
+                f"an environment ({', '.join(ENVIRONMENT_SUFFIXES)})"
+            )
+
+    def open_model(self, source: Any, *, keep_view: bool = False) -> None:
+        """Read a model in the background, and show it in place of this one.
+
+        ``keep_view`` leaves the camera where it is.
+        """
+        path = asset_folder() / "demo.glb" if source is None else source
+        read = partial(load_model, path)
+        if isinstance(source, Model):
+            read = partial(_identity, source)
+        self._work.start(
+            f"reading {_name(path)}",
+            read,
+            partial(self._show_model, source, keep_view=keep_view),
+        )
+
+    def open_environment(self, source: Any) -> None:
+        """Read an environment in the background, and light with it."""
+        read = partial(load_environment, source)
+        if source is None or isinstance(source, Environment):
+            read = partial(_identity, source)
+        self._work.start(
+            f"reading {_name(source)}",
+            read,
+            partial(self._show_environment, source),
+        )
+
+    def frame_everything(self) -> None:
+        """Look at the whole model."""
+        self._frame(self.scene.bounds())
+
+    def frame_selection(self) -> None:
+        """Look at the node that is selected, or else at everything."""
+        bounds = None
+        if self.model is not None and self.selection is not None:
+            bounds = self._bounds_of(self.selection)
+        self._frame(self.scene.bounds() if bounds is None else bounds)
+
+    def next_camera(self) -> None:
+        """Look through the next camera of the file, if it has any."""
+        cameras = self.scene.cameras
+        if cameras:
+            self._camera_number = (self._camera_number + 1) % len(cameras)
+            self._look_through(cameras[self._camera_number])
+
+    def save_picture(self, path: str | os.PathLike[str]) -> None:
+        """Save the next picture, without panels, as .png or .exr."""
+        self._wants_picture = Path(path)
+        self.request_redraw()
+
+    def request(self) -> RenderRequest:
+        """What would render the picture that is seen now."""
+        controls = self.controls
+        bounds = self.scene.bounds()
+        centre = np.zeros(3) if bounds is None else np.mean(bounds, axis=0)
+        is_orbit = np.allclose(
+            controls.target, centre, atol=1e-6 * controls.distance
+        )
+        orbit = (
+            f"orbit:{math.degrees(controls.yaw):.6g},"
+            f"{math.degrees(controls.pitch):.6g},{controls.distance:.6g}"
+        )
+        return replace(
+            self.begun,
+            source=self.model_source,
+            environment=self.environment_source,
+            environment_rotation=self.scene.environment_rotation,
+            environment_intensity=self.scene.environment_intensity,
+            background=self.scene.background,
+            # A camera that looks elsewhere has no name on the command line.
+            camera=orbit if is_orbit else self.camera,
+            size=self.size,
+            settings=self.settings,
+        )
+
+    def command(self) -> str:
+        """The ``moka render`` command for :meth:`request`."""
+        return command_text(self.request())
+
+    # Events.
+
+    def _press(self, event: KeyEvent) -> None:
+        is_control = Modifiers.CONTROL in event.modifiers
+        match event.key:
+            case Key.ESCAPE:
+                self.quit()
+            case Key.F1:
+                self.shows_help = not self.shows_help
+            case Key.F11 if self.window is not None:
+                self.window.fullscreen = not self.window.fullscreen
+            case Key.F12:
+                self.save_picture(_unused("moka", ".png"))
+            case Key.TAB | Key.H:
+                self.shows_panels = not self.shows_panels
+            case Key.C if is_control and self.window is not None:
+                self.window.clipboard = self.command()
+            case Key.C:
+                self.next_camera()
+            case Key.F:
+                self.frame_selection()
+            case Key.HOME:
+                self.frame_everything()
+
+    def _click(self, event: MouseButtonEvent) -> None:
+        if event.pressed:
+            is_ours = not self.interface.wants_pointer
+            self._pressed_at = (event.x, event.y) if is_ours else None
+            return
+        self._pressed_at = None
+
+    def _drag(self, event: MouseMoveEvent) -> None:
+        mouse = self.input.mouse
+        height = self._window_size()[1]
+        across, down = event.dx / height, event.dy / height
+        if mouse.is_down(MouseButton.LEFT):
+            self.controls.orbit(across, down)
+        elif mouse.is_down(MouseButton.RIGHT) or mouse.is_down(
+            MouseButton.MIDDLE
+        ):
+            self.controls.pan(across, down, self.camera)
+        else:
+            return
+        self._look()
+
+    def _fly(self, seconds: float) -> None:
+        keyboard = self.input.keyboard
+        if self.interface.wants_keyboard or Modifiers.CONTROL in (
+            keyboard.modifiers
+        ):
+            return
+
+        def held(positive: Key, negative: Key) -> float:
+            return keyboard.is_down(positive) - keyboard.is_down(negative)
+
+        way = np.array(
+            [held(Key.D, Key.A), held(Key.E, Key.Q), held(Key.W, Key.S)]
+        )
+        if not way.any():
+            return
+        # The first frame after a rest is no second long.
+        step = _FLIGHT * min(seconds, 0.1)
+        if Modifiers.SHIFT in keyboard.modifiers:
+            step *= 4.0
+        self.controls.fly(*(step * way))
+        self._look()
+        self.request_redraw()
+
+    # The camera.
+
+    def _look(self) -> None:
+        self.controls.apply(self.camera)
+        self.request_redraw()
+
+    def _frame(self, bounds: Any) -> None:
+        width, height = self.size
+        self.controls.frame(bounds, self.camera, width / height)
+        self._look()
+
+    def _look_through(self, camera: Camera) -> None:
+        """Stand where ``camera`` does, free to go on from there."""
+        bounds = self.scene.bounds()
+        centre = np.zeros(3) if bounds is None else np.mean(bounds, axis=0)
+        distance = float(np.linalg.norm(camera.position - centre)) or 1.0
+        self.camera.projection = camera.projection
+        self.controls.look_from(camera, distance)
+        self._look()
+
+    def _pointer(self) -> tuple[float, float]:
+        """Where it is, from the middle in halves of the window's height."""
+        x, y = self.input.mouse.position
+        width, height = self._window_size()
+        width -= self._column_width()
+        return (2 * x - width) / height, (height - 2 * y) / height
+
+    def _window_size(self) -> tuple[int, int]:
+        """In its own coordinates, which are those of events and panels."""
+        width, height = self.window.size if self.window else self.size
+        return max(width, 1), max(height, 1)
+
+    def _column_width(self) -> int:
+        """What the panels take of the window's width."""
+        if not self.shows_panels:
+            return 0
+        return min(
+            round(_COLUMN * self.interface.scale), self._window_size()[0] // 2
+        )
+
+    def _picture_size(
+        self, window: tuple[int, int], pixels: tuple[int, int]
+    ) -> tuple[int, int]:
+        """Pixels of the picture, which is beside the panels."""
+        part = 1.0 - self._column_width() / window[0]
+        return max(round(pixels[0] * part), 1), max(pixels[1], 1)
+
+    # What the background has done.
+
+    def _show_model(
+        self, source: Any, model: Model, *, keep_view: bool
+    ) -> None:
+        is_first = self.model is None
+        self._remove_model()
+        begun = self.begun
+        self.model = self.scene.add(
+            model,
+            scene=begun.scene if is_first else None,
+            variant=begun.variant if is_first else None,
+        )
+        self.model_source = source
+        self.selection = None
+        self.error = None
+        self._camera_number = -1
+        if self.window is not None:
+            self.window.set_title(f"{_name(source)} - moka")
+        if keep_view:
+            return
+        width, height = self.size
+        choice = begun.camera if is_first else None
+        if isinstance(choice, str):
+            choice = parse_camera(choice)
+        if isinstance(choice, Orbit) or (
+            choice is None and not self.scene.cameras
+        ):
+            self._orbit(choice or Orbit(self.controls.yaw, self.controls.pitch))
+            return
+        if not isinstance(choice, Camera):
+            choice = choose_camera(self.scene, choice, width / height)
+        self._look_through(choice)
+
+    def _orbit(self, orbit: Orbit) -> None:
+        self.controls.yaw = orbit.yaw
+        self.controls.pitch = orbit.pitch
+        self.frame_everything()
+        if orbit.distance is not None:
+            self.controls.distance = orbit.distance
+        self._look()
+
+    def _show_environment(
+        self, source: Any, environment: Environment | None
+    ) -> None:
+        self.scene.environment = environment
+        self.environment_source = source
+        self.error = None
+        self.request_redraw()
+
+    def _remove_model(self) -> None:
+        if self.model is not None:
+            self.model.remove()
+            self.model = None
+
+    def _bounds_of(self, node: int) -> Any:
+        assert self.model is not None
+        drawables = self.scene.drawables
+        row = self.model.rows[node]
+        shown = drawables.row == row
+        return drawables.bounds(shown) if shown.any() else None
+
+    # Pictures and other things that are read back.
+
+    def _read_picture(self, commands: CommandList) -> None:
+        path, self._wants_picture = self._wants_picture, None
+        if path is None or not self.renderer.is_complete:
+            self._wants_picture = path
+            return
+        read = self.renderer.read_radiance(commands)
+        settings = self.settings
+
+        def save() -> None:
+            assert read.data is not None
+            image = Image(
+                np.ascontiguousarray(read.data[::-1]),
+                tone_map=settings.tone_map,
+                exposure=settings.exposure,
+            )
+            self._work.start(
+                f"writing {path}", partial(image.save, path), _nothing
+            )
+
+        self.when_read([read], save)
+
+    def when_read(
+        self, reads: list[Readback], then: Callable[[], None]
+    ) -> None:
+        """Do ``then`` when all of ``reads`` have arrived."""
+        self._reads.append((reads, then))
+        self.request_redraw()
+
+    def _take_reads(self) -> None:
+        waiting = self._reads
+        self._reads = []
+        for reads, then in waiting:
+            if all(read.data is not None for read in reads):
+                then()
+            else:
+                self._reads.append((reads, then))
+
+    # The panels.
+
+    def _draw_interface(self, imgui: Any, size: tuple[int, int]) -> None:
+        if self.shows_panels:
+            self._draw_column(imgui, size)
+        self.shows_help = draw_help(imgui, is_open=self.shows_help)
+        self._draw_state(imgui, size)
+
+    def _draw_column(self, imgui: Any, size: tuple[int, int]) -> None:
+        width = self._column_width()
+        imgui.set_next_window_pos((size[0] - width, 0))
+        imgui.set_next_window_size((width, size[1]))
+        flags = imgui.WindowFlags_
+        imgui.begin("moka", None, flags.no_decoration | flags.no_move)
+        imgui.push_item_width(-0.35 * width)
+        for panel in self.panels:
+            if not panel.is_useful(self):
+                continue
+            opened = (
+                imgui.TreeNodeFlags_.default_open if panel.starts_open else 0
+            )
+            if imgui.collapsing_header(panel.title, opened):
+                imgui.push_id(panel.title)
+                panel.draw(imgui, self)
+                imgui.pop_id()
+        imgui.pop_item_width()
+        imgui.end()
+
+    def _draw_state(self, imgui: Any, size: tuple[int, int]) -> None:
+        """What is being done, and what went wrong, at the lower left."""
+        doing = self._work.doing
+        if doing is None and self.error is None:
+            return
+        imgui.set_next_window_pos((8, size[1] - 8), pivot=(0, 1))
+        flags = imgui.WindowFlags_
+        imgui.begin(
+            "state",
+            None,
+            flags.no_decoration | flags.always_auto_resize | flags.no_move,
+        )
+        if doing is not None:
+            imgui.text(f"{doing} ...")
+        if self.error is not None:
+            imgui.push_text_wrap_pos(0.6 * size[0])
+            imgui.text_colored((1.0, 0.5, 0.4, 1.0), self.error)
+            imgui.pop_text_wrap_pos()
+            if imgui.small_button("dismiss"):
+                self.error = None
+        imgui.end()
+
+
+def _name(source: Any) -> str:
+    if isinstance(source, str | os.PathLike):
+        return Path(source).name
+    return "the demo scene" if source is None else "a model"
+
+
+def _unused(stem: str, suffix: str) -> Path:
+    """The first of moka.png, moka.1.png, ... that is not there yet."""
+    path, number = Path(stem + suffix), 0
+    while path.exists():
+        number += 1
+        path = Path(f"{stem}.{number}{suffix}")
+    return path
+
+
+def _identity(value: Any) -> Any:
+    return value
+
+
+def _nothing(_: None) -> None:
+    pass

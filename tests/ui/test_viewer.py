@@ -1,0 +1,183 @@
+"""The viewer in a real window, with a person at mouse and keyboard."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image as PillowImage
+
+import moka
+from moka.app.events import DropEvent
+from moka.app.render_session import RenderRequest
+from moka.material.material import Material
+from moka.model import cube, model_of, save_model
+from moka.ui.viewer import Viewer
+from tests.support.display import running_display
+from tests.support.person import Person
+
+pytest.importorskip("imgui_bundle")
+pytestmark = [pytest.mark.window, pytest.mark.gpu]
+
+SIZE = (400, 300)
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[str]:
+    glfw = pytest.importorskip("glfw")
+    with running_display() as name:
+        yield name
+        glfw.terminate()
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    path = tmp_path / "cube.glb"
+    material = Material(
+        base_colour_factor=(1, 0.1, 0.05, 1), metallic_factor=0.0
+    )
+    save_model(model_of([(cube(1.0), material, np.eye(4))]), path)
+    return path
+
+
+@pytest.fixture
+def watch(
+    display: str, model: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> Callable[[Callable[[Person, Viewer], None]], Viewer]:
+    """Runs the viewer while somebody does as a story says."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(story: Callable[[Person, Viewer], None]) -> Viewer:
+        viewer = Viewer(RenderRequest(source=model, environment="furnace"))
+
+        def begin(person: Person) -> None:
+            person.wait("the model", lambda: viewer.model is not None)
+            story(person, viewer)
+
+        person = Person(viewer, display, begin)
+        person.come()
+        try:
+            moka.run(viewer, size=SIZE, vsync=False, debug=True, cache=False)
+        finally:
+            person.leave()
+        return viewer
+
+    return run
+
+
+Watch = Callable[[Callable[[Person, Viewer], None]], Viewer]
+
+
+def is_red(pixels: np.ndarray) -> np.ndarray:
+    red, green, blue = (pixels[..., i].astype(int) for i in range(3))
+    return (red > 150) & (red > green + 60) & (red > blue + 60)
+
+
+def test_it_shows_the_model_beside_its_panels(watch: Watch) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        box = (0, 0, *SIZE)
+        person.wait("a picture", lambda: is_red(person.look(box)).any())
+        found = is_red(person.look(box))
+        column = viewer.renderer.size[0]
+        assert 0 < column < SIZE[0]
+        assert not found[:, column:].any()
+        rows, columns = np.nonzero(found)
+        # In the middle of what is left.
+        assert abs(columns.mean() - column / 2) < 5
+        assert abs(rows.mean() - SIZE[1] / 2) < 20
+        person.act("key h")
+        person.wait(
+            "all of the window", lambda: viewer.renderer.size[0] == SIZE[0]
+        )
+
+    watch(story)
+
+
+def test_drag_wheel_and_keys_move_the_camera(watch: Watch) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        controls = viewer.controls
+        yaw, pitch = controls.yaw, controls.pitch
+        person.act("mousemove 80 150 mousedown 1")
+        person.act("mousemove 110 165 mouseup 1")
+        person.wait("an orbit", lambda: controls.yaw < yaw)
+        assert controls.pitch > pitch
+
+        distance = controls.distance
+        person.act("click 4")
+        person.wait("a zoom", lambda: controls.distance < distance)
+
+        target = controls.target.copy()
+        person.act("mousemove 80 150 mousedown 3")
+        person.act("mousemove 100 150 mouseup 3")
+        person.wait("a pan", lambda: bool((controls.target != target).any()))
+
+        person.act("key Home")
+        person.wait("everything", lambda: bool(np.allclose(controls.target, 0)))
+        before = controls.position
+        person.act("keydown w")
+        person.wait(
+            "a flight",
+            lambda: float(np.abs(controls.position - before).max()) > 0.05,
+        )
+        person.act("keyup w")
+
+    watch(story)
+
+
+def test_keys_open_help_save_the_picture_and_close(
+    watch: Watch, tmp_path: Path
+) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        person.act("mousemove 80 250 key F1")
+        person.wait("help", lambda: viewer.shows_help)
+        person.act("key F1")
+        person.wait("no help", lambda: not viewer.shows_help)
+        person.act("key F12")
+        saved = tmp_path / "moka.png"
+        person.wait("a file", saved.exists)
+        person.act("key ctrl+c")
+        assert viewer.window is not None
+        person.act("key Escape")
+        person.wait("the end", lambda: viewer.quits)
+
+    viewer = watch(story)
+    assert viewer.error is None
+    with PillowImage.open(tmp_path / "moka.png") as picture:
+        assert picture.size == viewer.renderer.size
+        assert is_red(np.asarray(picture.convert("RGB"))).any()
+
+
+def test_what_cannot_be_opened_is_told_and_changes_nothing(
+    watch: Watch, tmp_path: Path
+) -> None:
+    broken = tmp_path / "broken.glb"
+    broken.write_bytes(b"glTF no more")
+
+    def story(person: Person, viewer: Viewer) -> None:
+        shown = viewer.model
+        for path in (broken, tmp_path / "text.txt", tmp_path / "no.hdr"):
+            viewer.error = None
+            viewer.event(DropEvent((str(path),)))
+            viewer.request_redraw()
+            person.wait("an error", lambda: viewer.error is not None)
+            assert viewer.error is not None
+            assert path.name in viewer.error
+        assert viewer.model is shown
+
+    watch(story)
+
+
+def test_a_still_window_draws_nothing(watch: Watch) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        import time
+
+        drawn = []
+        draw = viewer.draw
+        viewer.draw = lambda *given: (drawn.append(1), draw(*given))[1]  # type: ignore[method-assign]
+        person.wait("rest", lambda: not viewer._settling)
+        time.sleep(0.5)
+        before = len(drawn)
+        time.sleep(1.0)
+        assert len(drawn) <= before + 1
+
+    watch(story)
