@@ -77,6 +77,20 @@ class NodeTree(Struct, eq=False):
                 jump[rows] = jump[jump[rows]]
         return world
 
+    @property
+    def numbers(self) -> Indices:
+        """(N,) the index in the file, then those of further instances.
+
+        An instance has none there; its row, which comes after all nodes of
+        the file, is its number.
+        """
+        rows = np.arange(len(self), dtype=np.int32)
+        return np.where(self.source >= 0, self.source, rows)
+
+    def row_of_number(self, number: int) -> int:
+        """The row of which :attr:`numbers` says ``number``."""
+        return int(np.flatnonzero(self.numbers == number)[0])
+
     def rows_of_file(self) -> Indices:
         """The row of each node of the file, by its index there."""
         count = int(np.count_nonzero(self.source >= 0))

@@ -183,7 +183,13 @@ class Drawables:
         nodes = [len(layout.model.nodes) for layout in layouts]
         first = 1 + np.cumsum([0, *nodes[:-1]], dtype=np.intp)
         self.object: Rows = first[self.owner] + np.concatenate(
-            [none, *(layout.node for layout in layouts)]
+            [
+                none,
+                *(
+                    layout.model.nodes.numbers[layout.node]
+                    for layout in layouts
+                ),
+            ]
         )
         self.local_bounds: Array = np.concatenate(
             [np.empty((0, 2, 3)), *(layout.bounds for layout in layouts)]

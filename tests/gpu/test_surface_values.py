@@ -122,6 +122,35 @@ def test_ids_are_nodes_counted_from_one() -> None:
     assert ids[8, 15] == 2
 
 
+def test_ids_are_the_numbers_of_the_file_in_whatever_order(
+    tmp_path: Path,
+) -> None:
+    """Also where the file has a child in front of its parent."""
+    import pygltflib
+
+    path = tmp_path / "quads.gltf"
+    save_model(model_of([(quad(0.5), Material(), placed_at(-0.5))]), path)
+    document = pygltflib.GLTF2().load(path)
+    mesh = document.nodes[-1].mesh
+    document.nodes = [
+        pygltflib.Node(mesh=mesh, translation=[0.5, 0, 0]),
+        pygltflib.Node(children=[0, 2]),
+        pygltflib.Node(mesh=mesh, translation=[-0.5, 0, 0]),
+    ]
+    document.scenes[0].nodes = [1]
+    document.save(path)
+    image = moka.render(
+        path,
+        environment="none",
+        size=SIZE,
+        camera=square_camera(),
+        aov="object-id",
+    )
+    ids = image.layers["object-id"]
+    assert ids[8, 15] == 1
+    assert ids[8, 8] == 3
+
+
 @pytest.mark.parametrize(("alpha", "hit"), [(0.4, 1), (0.6, 2)])
 @pytest.mark.parametrize("mode", [AlphaMode.MASK, AlphaMode.BLEND])
 def test_what_covers_less_than_half_is_looked_through(
