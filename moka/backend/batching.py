@@ -88,38 +88,45 @@ def merge_draws(recording: Recording, meshes: MeshTable) -> Batches:
     spans = [step for step in recording.steps if isinstance(step, DrawSpan)]
     if not len(draws):
         return Batches(np.zeros(0, INDIRECT), [0], [], [], [], [], {})
-    mesh = meshes.rows[draws["mesh"]]
-    new_batch = np.zeros(len(draws), np.bool_)
-    new_batch[[span.start for span in spans]] = True
-    for name in ("program", "bind_group", "state"):
-        column = draws[name]
-        new_batch[1:] |= column[1:] != column[:-1]
-    new_batch[1:] |= mesh["source"][1:] != mesh["source"][:-1]
-    new_command = new_batch.copy()
-    new_command[1:] |= draws["mesh"][1:] != draws["mesh"][:-1]
-
+    # Words of two columns each: program and bind group, mesh and state.
+    words = np.ascontiguousarray(draws).view(np.uint64).reshape(len(draws), -1)
+    new_command = np.zeros(len(draws), np.bool_)
+    new_command[[span.start for span in spans]] = True
+    for word in (1, 2):
+        new_command[1:] |= words[1:, word] != words[:-1, word]
     first_draws = np.flatnonzero(new_command)
+
+    head = draws[first_draws]
+    mesh = meshes.rows[head["mesh"]]
+    new_batch = np.isin(first_draws, [span.start for span in spans])
+    for column in (
+        head["program"],
+        head["bind_group"],
+        head["state"],
+        mesh["source"],
+    ):
+        new_batch[1:] |= column[1:] != column[:-1]
     commands = _commands(draws, mesh, first_draws)
-    heads = np.flatnonzero(new_batch)
-    start = np.searchsorted(first_draws, heads).tolist()
-    start.append(len(commands))
+    batches = np.flatnonzero(new_batch)
+    heads = first_draws[batches]
+    start = [*batches.tolist(), len(commands)]
     return Batches(
         commands,
         start,
         draws["program"][heads].tolist(),
         draws["bind_group"][heads].tolist(),
         draws["state"][heads].tolist(),
-        mesh["source"][heads].tolist(),
+        mesh["source"][batches].tolist(),
         _batches_of_spans(spans, heads),
     )
 
 
 def _commands(
     draws: NDArray[np.void],
-    mesh: NDArray[np.void],
+    heads: NDArray[np.void],
     first_draws: NDArray[np.int64],
 ) -> NDArray[np.void]:
-    heads = mesh[first_draws]
+    """The indirect commands; ``heads`` are the meshes of ``first_draws``."""
     commands = np.empty(len(first_draws), INDIRECT)
     commands["count"] = heads["count"]
     commands["first"] = heads["first"]

@@ -6,7 +6,7 @@ row each, every row with a key of its own). Every packet carries all that it
 needs, so nothing set for one draw reaches the next.
 """
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from msgspec import Struct
@@ -192,6 +192,7 @@ class CommandList:
         self._buffers: list[tuple[int, CommandBuffer]] = []
         self._buffer_order: list[int] = []
         self._bulk: list[tuple[int, int, int]] = []
+        self._in_order = False  # There is one bulk and it is sorted.
         self._draws: list[Draws] = []
         self._draw_count = 0
         self._instances: list[Instances] = []
@@ -231,13 +232,17 @@ class CommandList:
         """
         self._handle_sets.append(handles)
 
-    def draws(self, rows: Draws, instances: Instances) -> None:
+    def draws(
+        self, rows: Draws, instances: Instances, *, in_order: bool = False
+    ) -> None:
         """Record many draws at once, each at the place its key tells.
 
         ``rows`` is an array of :data:`moka.commands.draws.DRAW` whose
         ``first_instance`` counts rows of ``instances``; it is not copied,
         so leave it alone until the frame is submitted. The resources that
-        it names are told with :meth:`use`.
+        it names are told with :meth:`use`. With ``in_order`` the keys
+        ascend, and instances stand in the order of the rows: a frame of one
+        such array is put together without being sorted.
         """
         if rows.dtype != DRAW or instances.dtype != INSTANCE:
             raise CommandError("draws: rows need the dtypes DRAW and INSTANCE")
@@ -254,6 +259,7 @@ class CommandList:
         self._add_instances(instances)
         span = self._add_draws(rows)
         self._bulk.append((self._sequence, span.start, span.stop))
+        self._in_order = in_order and len(self._bulk) == 1
         self._sequence += len(rows)
 
     def bind_framebuffer(
@@ -367,6 +373,8 @@ class CommandList:
 
     def finish(self, *, sort: bool = True) -> Recording:
         """What a backend executes, in key order or as recorded."""
+        if sort and self._in_order:
+            return self._insert_buffers()
         draws = _concatenate(self._draws, DRAW)
         order = self._order(draws["key"], sort)
         steps, rows = self._steps(order)
@@ -374,12 +382,61 @@ class CommandList:
         instances = _gather_instances(
             draws, _concatenate(self._instances, INSTANCE)
         )
+        return self._recording(steps, draws, instances)
+
+    def _recording(
+        self,
+        steps: list[Command | DrawSpan],
+        draws: Draws,
+        instances: Instances,
+    ) -> Recording:
         return Recording(
             tuple(steps),
             draws,
             instances,
             tuple(self._states),
             (frozenset(self._handles), *self._handle_sets),
+        )
+
+    def _insert_buffers(self) -> Recording:
+        """The buffers placed among the rows of the one, sorted, bulk."""
+        ((sequence, start, stop),) = self._bulk
+        draws = _concatenate(self._draws, DRAW)
+        instances = _concatenate(self._instances, INSTANCE)
+        keys = np.ascontiguousarray(draws["key"][start:stop])
+        steps: list[Command | DrawSpan] = []
+        spans: list[DrawSpan] = []
+        placed = 0
+
+        def place(span: DrawSpan) -> None:
+            nonlocal placed
+            count = span.stop - span.start
+            if count:
+                spans.append(span)
+                steps.append(DrawSpan(placed, placed + count))
+                placed += count
+
+        done = start
+        for number in sorted(
+            range(len(self._buffers)), key=lambda each: self._buffers[each][0]
+        ):
+            key, buffer = self._buffers[number]
+            is_before = self._buffer_order[number] < sequence
+            side: Literal["left", "right"] = "left" if is_before else "right"
+            here = start + int(np.searchsorted(keys, np.uint64(key), side))
+            place(DrawSpan(done, here))
+            done = here
+            for entry in buffer._entries:
+                if isinstance(entry, DrawSpan):
+                    place(entry)
+                else:
+                    steps.append(entry)
+        place(DrawSpan(done, stop))
+        return self._recording(
+            steps,
+            *_join(
+                [draws[span.start : span.stop] for span in spans], instances
+            ),
         )
 
     def _add_draws(self, rows: Draws) -> DrawSpan:
@@ -470,6 +527,23 @@ def _concatenate(
 
 def _take(rows: NDArray[np.void], order: NDArray[np.int64]) -> NDArray[np.void]:
     return _words(rows).take(order, axis=0).view(rows.dtype)[:, 0]
+
+
+def _join(pieces: list[Draws], instances: Instances) -> tuple[Draws, Instances]:
+    """Draws one after the other, and their instances in their order.
+
+    Within each piece instances already are.
+    """
+    used = []
+    for piece in pieces:
+        last = piece[-1]
+        end = int(last["first_instance"]) + int(last["instance_count"])
+        used.append(instances[int(piece["first_instance"][0]) : end])
+    # A copy, since the column is written below.
+    draws = _concatenate([np.empty(0, DRAW), *pieces], DRAW)
+    counts = draws["instance_count"]
+    draws["first_instance"] = np.cumsum(counts) - counts
+    return draws, _concatenate(used, INSTANCE)
 
 
 def _gather_instances(draws: Draws, instances: Instances) -> Instances:

@@ -29,6 +29,7 @@ order they were recorded.
 """
 
 from enum import IntEnum
+from functools import lru_cache
 
 import numpy as np
 from msgspec import Struct
@@ -44,6 +45,8 @@ __all__ = [
     "PROGRAM_BITS",
     "SortKey",
     "Stage",
+    "blended_at",
+    "opaque_at",
     "pack_blended_keys",
     "pack_opaque_keys",
     "unpack_key",
@@ -88,29 +91,34 @@ class SortKey(Struct, frozen=True):
     depth: float = 0.0
 
     def __int__(self) -> int:
-        if self.stage is not Stage.BLENDED:
-            return int(
-                pack_opaque_keys(
-                    pass_=self.pass_,
-                    layer=self.layer,
-                    stage=self.stage,
-                    program=self.program,
-                    material=self.material,
-                    mesh=self.mesh,
-                    depth=self.depth,
-                )
-            )
-        if self.mesh:
-            raise CommandError("sort key: a blended key holds no mesh")
+        return _pack(self)
+
+
+@lru_cache(maxsize=256)  # The same few are asked for in every frame.
+def _pack(key: SortKey) -> int:
+    if key.stage is not Stage.BLENDED:
         return int(
-            pack_blended_keys(
-                pass_=self.pass_,
-                layer=self.layer,
-                program=self.program,
-                material=self.material,
-                depth=self.depth,
+            pack_opaque_keys(
+                pass_=key.pass_,
+                layer=key.layer,
+                stage=key.stage,
+                program=key.program,
+                material=key.material,
+                mesh=key.mesh,
+                depth=key.depth,
             )
         )
+    if key.mesh:
+        raise CommandError("sort key: a blended key holds no mesh")
+    return int(
+        pack_blended_keys(
+            pass_=key.pass_,
+            layer=key.layer,
+            program=key.program,
+            material=key.material,
+            depth=key.depth,
+        )
+    )
 
 
 def pack_opaque_keys(
@@ -132,9 +140,17 @@ def pack_opaque_keys(
         | (_field("program", program, PROGRAM_BITS) << np.uint64(42))
         | (_field("material", material, MATERIAL_BITS) << np.uint64(28))
         | (_field("mesh", mesh, MESH_BITS) << np.uint64(16))
-        | _depth(depth, DEPTH_BITS)
     )
-    return keys
+    return opaque_at(keys, depth)
+
+
+def opaque_at(keys: NDArray[np.uint64], depth: ArrayLike) -> NDArray[np.uint64]:
+    """Keys of opaque draws with their depths, for ``keys`` of depth 0.
+
+    What a frame does, since of all fields depth alone follows the camera.
+    """
+    moved: NDArray[np.uint64] = keys | _depth(depth, DEPTH_BITS)
+    return moved
 
 
 def pack_blended_keys(
@@ -150,15 +166,23 @@ def pack_blended_keys(
     Arguments broadcast to one uint64 array. Raises CommandError naming the
     field that is out of its range.
     """
-    farthest = np.uint64((1 << BLENDED_DEPTH_BITS) - 1)
-    inverted = farthest - _depth(depth, BLENDED_DEPTH_BITS)
+    nearest = np.uint64((1 << BLENDED_DEPTH_BITS) - 1)
     keys: NDArray[np.uint64] = (
         _head(pass_, layer, Stage.BLENDED)
-        | (inverted << np.uint64(26))
+        | (nearest << np.uint64(26))
         | (_field("program", program, PROGRAM_BITS) << np.uint64(14))
         | _field("material", material, MATERIAL_BITS)
     )
-    return keys
+    return blended_at(keys, depth)
+
+
+def blended_at(
+    keys: NDArray[np.uint64], depth: ArrayLike
+) -> NDArray[np.uint64]:
+    """Keys of blended draws with their depths, for ``keys`` of depth 0."""
+    depths = _depth(depth, BLENDED_DEPTH_BITS)
+    moved: NDArray[np.uint64] = keys - (depths << np.uint64(26))
+    return moved
 
 
 def unpack_key(key: int) -> SortKey:

@@ -92,6 +92,10 @@ class UniformLayout(Struct, frozen=True, dict=True):
             }
         )
 
+    @cached_property
+    def _types(self) -> dict[str, Parameter]:
+        return {parameter.name: parameter for parameter in self.parameters}
+
     @property
     def size(self) -> int:
         """Bytes of the whole block."""
@@ -126,7 +130,7 @@ class UniformLayout(Struct, frozen=True, dict=True):
 
     def fill(self, row: NDArray[np.void], values: Mapping[str, Any]) -> None:
         """Write ``values`` into the first element of ``row``."""
-        types = {parameter.name: parameter for parameter in self.parameters}
+        types = self._types
         for name, value in values.items():
             if name not in types:
                 raise CommandError(

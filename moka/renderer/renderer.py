@@ -393,6 +393,7 @@ class Renderer:
         self._gatherer = DrawGatherer(
             scene.drawables,
             self._prepared,
+            PASS_SCENE,
             None if self._poses is None else self._poses.places,
         )
         return self._prepared
@@ -450,9 +451,8 @@ class Renderer:
         )
         commands.use(prepared.handles)
         commands.draws(
-            *self._gatherer.gather(
-                scene.transforms, visible, view, states, PASS_SCENE
-            )
+            *self._gatherer.gather(scene.transforms, visible, view, states),
+            in_order=True,
         )
         self._sky_behind = self._sky(scene, view)
         if self._accumulates:

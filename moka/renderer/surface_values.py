@@ -166,7 +166,7 @@ class SurfaceValues:
         Returns the targets, cleared to 0 where nothing is; they are valid
         until the next call.
         """
-        prepared = self._prepare(scene, materials, view, groups, poses)
+        prepared = self._prepare(scene, materials, view, groups, poses, pass_)
         if poses is not None:
             poses.update(visible, self._pools[1], commands)
         targets = self._update_targets(size, groups)
@@ -184,8 +184,8 @@ class SurfaceValues:
                 visible,
                 view,
                 np.array(states, np.uint32),
-                pass_,
-            )
+            ),
+            in_order=True,
         )
         return targets
 
@@ -196,6 +196,7 @@ class SurfaceValues:
         view: View,
         groups: tuple[str, ...],
         poses: "PoseTexture | None",
+        pass_: int,
     ) -> PreparedScene:
         lighting = LightingDescription(
             environment=False,
@@ -230,6 +231,7 @@ class SurfaceValues:
         self._gatherer = DrawGatherer(
             scene.drawables,
             self._prepared,
+            pass_,
             None if poses is None else poses.places,
         )
         return self._prepared

@@ -44,6 +44,8 @@ class Camera:
         self.projection = projection
         self.transform = Transform() if transform is None else transform
         self.name = name
+        # The world matrix that was last asked about, and its view matrix.
+        self._viewed: tuple[Array, Array] | None = None
 
     @classmethod
     def from_description(
@@ -80,11 +82,14 @@ class Camera:
     def view_matrix(self) -> Array:
         """World to camera, float64 (4, 4): a rotation and a translation."""
         world = self.transform.world_matrix
-        rotation = look_rotation(forward_directions(world), world[:3, 1])
-        view = np.eye(4)
-        view[:3, :3] = rotation.T
-        view[:3, 3] = -rotation.T @ world[:3, 3]
-        return view
+        # A frame asks for it several times.
+        if self._viewed is None or not np.array_equal(world, self._viewed[0]):
+            rotation = look_rotation(forward_directions(world), world[:3, 1])
+            view = np.eye(4)
+            view[:3, :3] = rotation.T
+            view[:3, 3] = -rotation.T @ world[:3, 3]
+            self._viewed = world.copy(), view
+        return self._viewed[1].copy()
 
     def projection_matrix(
         self, aspect: float, *, reversed_z: bool = False

@@ -1,11 +1,15 @@
-"""What of the scene a camera can see, for all boxes at once."""
+"""What of the scene a camera can see, for all boxes at once.
+
+Boxes are laid out as the rows of a matrix, so that the distances of all of
+them from all planes are one matrix product.
+"""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from moka.core.maths import Array
 
-__all__ = ["boxes_in_frustum", "view_depths"]
+__all__ = ["boxes_in_frustum", "pack_boxes", "view_depths"]
 
 # Rounding of the plane equations, relative to their largest term. A box is
 # only left out if it is outside by more.
@@ -14,8 +18,23 @@ _ROUNDING = 1e-12
 _FARTHEST = float(np.finfo(np.float32).max)
 
 
-def boxes_in_frustum(planes: ArrayLike, bounds: ArrayLike) -> NDArray[np.bool_]:
-    """Which boxes (N, 2, 3) may reach into the frustum of planes (P, 4).
+def pack_boxes(bounds: ArrayLike) -> Array:
+    """Boxes (6, N), as the other functions read them, of bounds (N, 2, 3).
+
+    Three rows of the centres' coordinates and three of half the extents,
+    these larger by what plane equations are rounded by.
+    """
+    bounds = np.asarray(bounds, np.float64)
+    boxes = np.empty((6, len(bounds)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        boxes[:3] = 0.5 * (bounds[:, 0] + bounds[:, 1]).T
+        boxes[3:] = 0.5 * (bounds[:, 1] - bounds[:, 0]).T
+        boxes[3:] += _ROUNDING * (np.abs(boxes[:3]) + boxes[3:])
+    return boxes
+
+
+def boxes_in_frustum(planes: ArrayLike, boxes: Array) -> NDArray[np.bool_]:
+    """Which boxes (6, N) may reach into the frustum of planes (P, 4).
 
     Planes are those of :func:`moka.core.projection.frustum_planes`. A box is
     left out only if it lies wholly outside one plane, so that nothing that
@@ -25,27 +44,23 @@ def boxes_in_frustum(planes: ArrayLike, bounds: ArrayLike) -> NDArray[np.bool_]:
     Boxes", the basic test of centre and half extent.
     """
     planes = np.asarray(planes, np.float64)
-    bounds = np.asarray(bounds, np.float64)
-    normals, offsets = planes[:, :3].T, planes[:, 3]
+    normals, offsets = planes[:, :3], planes[:, 3:]
     with np.errstate(over="ignore", invalid="ignore"):
-        centre = 0.5 * (bounds[:, 0] + bounds[:, 1])
-        extent = 0.5 * (bounds[:, 1] - bounds[:, 0])
-        reach = extent @ np.abs(normals)
-        largest = np.abs(centre) @ np.abs(normals) + reach + np.abs(offsets)
-        distance = centre @ normals + reach + offsets
-        outside = distance < -_ROUNDING * largest
-    return np.asarray(~outside.any(axis=1))
+        distance = np.hstack([normals, np.abs(normals)]) @ boxes
+        distance += offsets + _ROUNDING * np.abs(offsets)
+        # Not so for what is not a number.
+        outside = (distance < 0.0).any(axis=0)
+    return np.asarray(~outside)
 
 
-def view_depths(view_matrix: ArrayLike, bounds: ArrayLike) -> Array:
-    """Distances (N,) of box centres along the view axis, in metres.
+def view_depths(view_matrix: ArrayLike, boxes: Array) -> Array:
+    """Distances (N,) of centres of boxes (6, N) along the view axis, metres.
 
     Zero for centres behind the camera and for boxes that are not finite, at
     most what float32 holds, since a sort key takes no others.
     """
-    bounds = np.asarray(bounds, np.float64)
     row = np.asarray(view_matrix, np.float64)[2]
     with np.errstate(over="ignore", invalid="ignore"):
-        centre = 0.5 * (bounds[:, 0] + bounds[:, 1])
-        depth = -(centre @ row[:3] + row[3])
+        depth = -row[:3] @ boxes[:3]
+        depth -= row[3]
     return np.where(np.isfinite(depth), np.clip(depth, 0, _FARTHEST), 0)

@@ -17,6 +17,7 @@ from moka.core.maths import Array, is_mirrored, transform_bounds, union_bounds
 from moka.material.material import Material
 from moka.model.mesh import Primitive
 from moka.model.model import Model
+from moka.scene.culling import pack_boxes
 from moka.scene.forest import Rows
 from moka.scene.level_of_detail import (
     joined_levels,
@@ -154,7 +155,8 @@ class Drawables:
     the position in it, ``row`` (D,) the row of the transform, ``owner`` (D,)
     the position of the model. ``object`` (D,) is 1 and the number of the
     node, counted on from model to model. ``local_bounds`` and
-    ``world_bounds`` are float64 (D, 2, 3), least and greatest corner;
+    ``world_bounds`` are float64 (D, 2, 3), least and greatest corner,
+    ``boxes`` (6, D) the same as :mod:`moka.scene.culling` reads them;
     ``mirrored`` (D,) tells where the world matrix turns front faces
     clockwise. The last two are as of the last :meth:`refresh`. ``levels``
     are the levels of detail that draws belong to, ``poses`` those of skins
@@ -203,6 +205,7 @@ class Drawables:
         )
         self.total = len(self.row)
         self.world_bounds: Array = np.zeros_like(self.local_bounds)
+        self.boxes = pack_boxes(self.world_bounds)
         self.mirrored: NDArray[np.bool_] = np.zeros(len(self.row), np.bool_)
         self._version = -1  # Of the transforms; none is that old.
         self.poses: Poses | None = None
@@ -228,10 +231,14 @@ class Drawables:
         world = matrices[self.row[draws]]
         # What overflows is not finite, and culling keeps that.
         with np.errstate(over="ignore", invalid="ignore"):
-            self.world_bounds[draws] = transform_bounds(
-                world, self.local_bounds[draws]
-            )
+            bounds = transform_bounds(world, self.local_bounds[draws])
             self.mirrored[draws] = is_mirrored(world)
+        self.set_bounds(draws, bounds)
+
+    def set_bounds(self, draws: Rows, bounds: Array) -> None:
+        """Give ``draws`` (N,) their boxes (N, 2, 3) in the world."""
+        self.world_bounds[draws] = bounds
+        self.boxes[:, draws] = pack_boxes(bounds)
 
     def only(self, kept: NDArray[np.bool_]) -> "Drawables":
         """These draws without those that are not ``kept`` (D,).
@@ -242,6 +249,7 @@ class Drawables:
         made.levels = None
         for name in _COLUMNS:
             setattr(made, name, getattr(self, name)[kept])
+        made.boxes = self.boxes[:, kept]
         used, made.primitive = np.unique(made.primitive, return_inverse=True)
         made.primitives = [self.primitives[index] for index in used.tolist()]
         if self.poses is not None:

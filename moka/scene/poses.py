@@ -141,10 +141,9 @@ class Poses:
             first = np.cumsum(count) - count
             least = np.minimum.reduceat(boxes[:, 0], first)
             greatest = np.maximum.reduceat(boxes[:, 1], first)
-            drawables.world_bounds[draws] = (
-                np.stack([least, greatest], axis=1)
-                + self.skins.anchor[skin][:, None]
-            )
+            bounds = np.stack([least, greatest], axis=1)
+            bounds += self.skins.anchor[skin][:, None]
+        drawables.set_bounds(draws, bounds)
         drawables.mirrored[draws] = self.skins.mirrored[skin]
 
 

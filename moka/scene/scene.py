@@ -262,7 +262,7 @@ class Scene:
         """
         planes = camera.frustum_planes(aspect)
         drawables = self.drawables
-        visible = self.shown & boxes_in_frustum(planes, drawables.world_bounds)
+        visible = self.shown & boxes_in_frustum(planes, drawables.boxes)
         if drawables.levels is not None:
             visible &= drawables.levels.shown(
                 drawables.world_bounds, camera, aspect

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from moka.commands.command_list import CommandList, DrawSpan
+from moka.commands.command_list import CommandList, DrawSpan, Recording
 from moka.commands.commands import Clear, SetScissor, SetViewport
 from moka.commands.descriptors import CullMode, RasterState
 from moka.commands.draws import DRAW, INSTANCE
@@ -117,6 +117,54 @@ def test_draws_with_many_instances_keep_them_in_order() -> None:
     assert recording.draws["first_instance"].tolist() == [0, 3]
     # The caller's rows are not touched.
     assert draws["first_instance"].tolist() == [0, 2]
+
+
+@given(
+    st.lists(st.integers(0, 3), max_size=8),
+    st.lists(st.tuples(st.integers(0, 3), st.booleans()), max_size=5),
+    st.lists(st.integers(0, 2), min_size=8, max_size=8),
+)
+def test_draws_that_are_in_order_end_up_as_sorted_ones_would(
+    keys: list[int], buffers: list[tuple[int, bool]], counts: list[int]
+) -> None:
+    """With buffers before, between and behind them, recorded at any time."""
+    recorded = []
+    for in_order in (False, True):
+        commands = CommandList()
+
+        def record(early: bool, commands: CommandList = commands) -> None:
+            for number, (key, is_early) in enumerate(buffers):
+                if is_early == early:
+                    buffer = commands.command_buffer(key)
+                    buffer.viewport(number, 0, 1, 1)
+                    buffer.draw(PROGRAM, MESH, GROUP)
+
+        record(early=True)
+        draws = rows(sorted(keys))
+        draws["instance_count"] = counts[: len(keys)]
+        ends = np.cumsum(draws["instance_count"])
+        draws["first_instance"] = ends - draws["instance_count"]
+        commands.draws(draws, instances(int(sum(counts)), 1), in_order=in_order)
+        record(early=False)
+        recorded.append(commands.finish())
+    plain, ready = recorded
+    assert [type(step) for step in plain.steps] == [
+        type(step) for step in ready.steps
+    ]
+    assert _flat(plain) == _flat(ready)
+    assert plain.draws.tolist() == ready.draws.tolist()
+    assert plain.instances.tobytes() == ready.instances.tobytes()
+
+
+def _flat(recording: Recording) -> list[object]:
+    """The steps, spans as the draws in them."""
+    flat: list[object] = []
+    for step in recording.steps:
+        if isinstance(step, DrawSpan):
+            flat += recording.draws[step.start : step.stop].tolist()
+        else:
+            flat.append(step)
+    return flat
 
 
 def test_recorded_bytes_are_copied() -> None:

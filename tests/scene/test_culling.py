@@ -12,7 +12,7 @@ from moka.core.maths import transform_bounds
 from moka.core.projection import look_at
 from moka.model.cameras import Orthographic, Perspective
 from moka.scene.camera import Camera
-from moka.scene.culling import boxes_in_frustum, view_depths
+from moka.scene.culling import boxes_in_frustum, pack_boxes, view_depths
 from moka.scene.transform import Transform
 
 PROJECTIONS = [
@@ -59,7 +59,8 @@ def test_a_box_with_a_visible_point_is_kept(
     points = points @ np.swapaxes(world[:, :3, :3], 1, 2)
     points += world[:, None, :3, 3]
     kept = boxes_in_frustum(
-        camera.frustum_planes(aspect), transform_bounds(world, local)
+        camera.frustum_planes(aspect),
+        pack_boxes(transform_bounds(world, local)),
     )
     assert kept[seen(camera, aspect, points).any(axis=1)].all()
 
@@ -89,7 +90,7 @@ def cube(x: float, y: float, z: float, size: float = 1) -> list[list[float]]:
 )
 def test_boxes_around_a_right_angle(box: list[list[float]], kept: bool) -> None:
     camera = Camera(Perspective(math.pi / 2, near=0.1, far=100))
-    result = boxes_in_frustum(camera.frustum_planes(1.0), [box])
+    result = boxes_in_frustum(camera.frustum_planes(1.0), pack_boxes([box]))
     assert result.tolist() == [kept]
 
 
@@ -97,25 +98,27 @@ def test_infinite_far_keeps_the_horizon() -> None:
     camera = Camera(Perspective(1.0, near=0.01))
     planes = camera.frustum_planes(1.0)
     boxes = [cube(0, 0, -1e12), cube(0, 0, 1e12)]
-    assert boxes_in_frustum(planes, boxes).tolist() == [True, False]
+    assert boxes_in_frustum(planes, pack_boxes(boxes)).tolist() == [True, False]
 
 
 def test_no_boxes_are_no_problem() -> None:
     planes = Camera().frustum_planes(1.0)
-    assert boxes_in_frustum(planes, np.zeros((0, 2, 3))).shape == (0,)
+    assert boxes_in_frustum(planes, pack_boxes(np.zeros((0, 2, 3)))).shape == (
+        0,
+    )
 
 
 def test_depth_is_along_the_axis_and_not_the_distance() -> None:
     view = look_at((0, 0, 5), (0, 0, 0))
     boxes = [cube(0, 0, 0), cube(30, 40, -5), cube(0, 0, 9)]
-    assert_allclose(view_depths(view, boxes), [5, 10, 0])
+    assert_allclose(view_depths(view, pack_boxes(boxes)), [5, 10, 0])
 
 
 def test_depth_of_what_is_not_finite_is_zero() -> None:
     boxes = [[[-math.inf] * 3, [math.inf] * 3], [[math.nan] * 3] * 2]
-    assert view_depths(np.eye(4), boxes).tolist() == [0, 0]
+    assert view_depths(np.eye(4), pack_boxes(boxes)).tolist() == [0, 0]
 
 
 def test_depth_fits_a_float32() -> None:
-    depth = view_depths(np.eye(4), [cube(0, 0, -1e200)])
+    depth = view_depths(np.eye(4), pack_boxes([cube(0, 0, -1e200)]))
     assert np.isfinite(depth.astype(np.float32)).all()
