@@ -7,7 +7,7 @@ driver loads while NumPy is imported.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from typing import TYPE_CHECKING, Any
@@ -129,6 +129,7 @@ class RenderSession:
         scene: "Scene",
         model: "SceneModel",
         camera: "Camera",
+        keep_map: Callable[[], None] | None = None,
     ) -> None:
         self.request = request
         self.scene = scene
@@ -137,6 +138,7 @@ class RenderSession:
         self._statistics = statistics
         self._device = device
         self._renderer = renderer
+        self._keep_map = keep_map
 
     @classmethod
     @contextmanager
@@ -191,9 +193,16 @@ class RenderSession:
                     cache=DiskCache() if cache else None,
                     materials=materials,
                 )
-                scene.environment = environment.result()
+                scene.environment, keep_map = environment.result()
                 yield cls(
-                    request, statistics, device, renderer, scene, model, camera
+                    request,
+                    statistics,
+                    device,
+                    renderer,
+                    scene,
+                    model,
+                    camera,
+                    keep_map,
                 )
 
     def pose(self, time: float) -> None:
@@ -258,6 +267,10 @@ class RenderSession:
         if self._renderer.has_lighting_to_keep:
             with self._statistics.stage("store"):
                 self._renderer.keep_lighting()
+        if self._keep_map is not None:
+            with self._statistics.stage("store"):
+                self._keep_map()
+            self._keep_map = None
 
 
 def _image(
@@ -340,18 +353,28 @@ def _pose(model: "SceneModel", request: RenderRequest, time: float) -> None:
 
 def _load_environment(
     request: RenderRequest, statistics: Statistics, *, cache: bool
-) -> "Environment | None":
-    from moka.lighting.environment import Environment, load_environment
+) -> "tuple[Environment | None, Callable[[], None] | None]":
+    """The environment, and what keeps it in the cache if it is new."""
+    from moka.lighting.environment import (
+        Environment,
+        is_map_file,
+        load_environment,
+    )
 
     source = request.environment
     if source is None or isinstance(source, Environment):
-        return source
+        return source, None
     with statistics.stage("decode"):
+        if cache and is_map_file(source):
+            from moka.lighting.disk_cache import DiskCache
+            from moka.lighting.map_cache import load_map
+
+            return load_map(source, DiskCache())
         environment = load_environment(source)
         if cache and environment is not None:
             # By which the cache finds it; here nobody waits for it.
             _ = environment.digest
-        return environment
+        return environment, None
 
 
 def _choose_camera(request: RenderRequest, scene: "Scene") -> "Camera":

@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 
 from moka.core.errors import EnvironmentMapError, ImageFileError
 
-__all__ = ["BRIGHTEST", "Environment", "Sun", "load_environment"]
+__all__ = [
+    "BRIGHTEST",
+    "Environment",
+    "Sun",
+    "is_map_file",
+    "load_environment",
+    "read_map",
+]
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -97,6 +104,15 @@ class Environment(Struct, frozen=True, eq=False, dict=True):
         """The same linear Rec.709 ``radiance`` from everywhere."""
         return cls(np.array([[radiance]], np.float32), name=name)
 
+    @classmethod
+    def known(
+        cls, pixels: NDArray[np.float32], digest: bytes, name: str
+    ) -> "Environment":
+        """A map whose :attr:`digest` is known, so that none is computed."""
+        environment = cls(pixels, name=name)
+        environment.__dict__["digest"] = digest
+        return environment
+
     @cached_property
     def digest(self) -> bytes:
         """SHA-256 of all the light it sends; computed when first asked for.
@@ -143,10 +159,19 @@ def load_environment(
 
             return sky()
         case name:
-            return Environment(_read_map(Path(name)), name=name)
+            return Environment(read_map(Path(name)), name=name)
 
 
-def _read_map(path: Path) -> NDArray[np.float32]:
+def is_map_file(source: object) -> bool:
+    """Whether ``source`` is the path of a file, and not a built-in name."""
+    return (
+        isinstance(source, str | os.PathLike)
+        and os.fspath(source) not in BUILT_IN
+    )
+
+
+def read_map(path: Path) -> NDArray[np.float32]:
+    """The texels (H, W, 3) of a file; raises EnvironmentMapError."""
     match path.suffix.lower():
         case ".hdr" | ".pic":
             from moka.core.radiance_hdr import read_radiance_hdr

@@ -8,8 +8,6 @@ same.
 """
 
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,10 +15,9 @@ from numpy.typing import NDArray
 
 from moka.commands.descriptors import TextureDescriptor, TextureKind
 from moka.commands.handles import Handle
-from moka.core import solid_angle
-from moka.core.resources import shader_folder
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.brdf_table import TABLE
+from moka.lighting.code_digest import code_digest
 from moka.lighting.disk_cache import Arrays, DiskCache
 from moka.lighting.environment import Sun
 from moka.lighting.environment_lighting import (
@@ -28,7 +25,6 @@ from moka.lighting.environment_lighting import (
     LightingRequest,
 )
 from moka.lighting.environment_maps import CUBE_FORMAT, EnvironmentMaps
-from moka.version import __version__
 
 __all__ = ["LightingCache"]
 
@@ -109,7 +105,7 @@ class LightingCache:
         driver = (info.kind, info.vendor, info.renderer, info.version)
         from hashlib import blake2b
 
-        text = repr((parts, driver, _makers()))
+        text = repr((parts, driver, code_digest()))
         return blake2b(text.encode(), digest_size=20).hexdigest()
 
     def _uploaded(self, arrays: Arrays) -> EnvironmentLighting:
@@ -181,20 +177,3 @@ def _takes_time(request: LightingRequest) -> bool:
     return not request.environment.is_uniform and (
         request.specular or request.irradiance
     )
-
-
-@cache
-def _makers() -> str:
-    """A digest of all code whose constants and formulas shape lighting.
-
-    Coarse on purpose: an edit too many costs a preintegration, one that was
-    missed would be a wrong picture.
-    """
-    from hashlib import blake2b
-
-    digest = blake2b(f"{__version__} {np.__version__}".encode())
-    modules = Path(__file__).parent.glob("*.py")
-    shaders = shader_folder().rglob("*.*")
-    for path in sorted((*modules, Path(solid_angle.__file__), *shaders)):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()

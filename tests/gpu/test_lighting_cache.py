@@ -10,8 +10,8 @@ import pytest
 
 import moka
 from moka.cli.main import main
+from moka.lighting.code_digest import code_digest
 from moka.lighting.environment import Environment, Sun
-from moka.lighting.lighting_cache import _makers
 from moka.material.material import Material
 from moka.model import model_of, sphere
 
@@ -139,11 +139,11 @@ def test_lighting_made_otherwise_is_not_found(
     pixels()
     made = set(entries())
     monkeypatch.setattr(
-        "moka.lighting.lighting_cache._makers", lambda: "other code"
+        "moka.lighting.lighting_cache.code_digest", lambda: "other code"
     )
     pixels()
     assert len(entries()) == 2 * len(made)
-    assert len(_makers()) == 128
+    assert len(code_digest()) == 128
 
 
 def test_the_command_line(tmp_path: Path) -> None:
