@@ -83,7 +83,9 @@ class _AnimationReader:
         self._accessors = AccessorReader(source)
         self._light_count = light_count
         self._times: dict[int, NDArray[np.float32]] = {}
+        self._nodes = nodes
         self._rows = nodes.rows_of_file()
+        self._is_instance = nodes.source < 0
 
     def animation(self, path: str, raw: msgspec.Raw) -> Animation:
         source = self._source
@@ -135,21 +137,26 @@ class _AnimationReader:
             pointer = read_pointer(source, path, target)
             path = f"{path}.extensions.KHR_animation_pointer.pointer"
             targets = targets_of(source, path, pointer, self._light_count)
-            return [self._checked(path, each) for each in targets]
+            return [
+                found for each in targets for found in self._checked(path, each)
+            ]
         if target.node is None:
             return []
         path = f"{path}.node"
         source.check_index(path, target.node, "nodes", len(self._rows))
         found = AnimationTarget("node", target.node, target.path)
-        return [self._checked(path, found)]
+        return self._checked(path, found)
 
     def _checked(
         self, path: str, target: AnimationTarget
-    ) -> tuple[AnimationTarget, int]:
-        """A target, nodes by their row from here on, and its width."""
+    ) -> list[tuple[AnimationTarget, int]]:
+        """A target, nodes by their row from here on, and its width.
+
+        Weights of a mesh with instances are those of each of its instances.
+        """
         width = PROPERTIES[target.kind, target.property]
         if target.kind != "node":
-            return target, width
+            return [(target, width)]
         document = self._source.document
         node = document.nodes[target.index]
         if target.property in _TRANSFORM and node.matrix is not None:
@@ -167,8 +174,11 @@ class _AnimationReader:
                     path, f"nodes[{target.index}] has {count} morph targets"
                 )
             width = count if target.element is None else 1
-        row = int(self._rows[target.index])
-        return replace(target, index=row), width
+        rows = [int(self._rows[target.index])]
+        if target.property == "weights" and self._nodes.mesh[rows[0]] < 0:
+            instances = (self._nodes.parents == rows[0]) & self._is_instance
+            rows = np.flatnonzero(instances).tolist()
+        return [(replace(target, index=row), width) for row in rows]
 
     def _channel(
         self,
@@ -219,7 +229,7 @@ class _AnimationReader:
             )
         if not (np.isfinite(times).all() and times[0] >= 0):
             raise source.error(
-                path, f"accessors[{index}] has times that are no time from 0 on"
+                path, f"accessors[{index}] must hold finite times from 0 s on"
             )
         late = np.flatnonzero(np.diff(times) <= 0)
         if len(late):

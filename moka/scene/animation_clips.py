@@ -1,22 +1,28 @@
 """A model's animations made ready to be sampled, each when it first plays."""
 
+import numpy as np
+
 from moka.core.errors import OptionError
+from moka.core.maths import Array
 from moka.model.model import Model
-from moka.scene.animation_pose import Pose, PoseLayout
+from moka.scene.animated_copies import AnimatedCopies
+from moka.scene.animation_pose import PoseLayout, Poses
 from moka.scene.keyframes import KeyframeSampler
 
 __all__ = ["Clips"]
 
 
 class Clips:
-    """What all copies of a model share of its animations."""
+    """What all copies of a model share of its animations.
+
+    ``layout`` says what their poses are made of, ``copies`` which they have.
+    """
 
     def __init__(self, model: Model) -> None:
         self._model = model
         self.layout = PoseLayout(model)
+        self.copies = AnimatedCopies(self.layout)
         self._samplers: dict[int, KeyframeSampler] = {}
-        # Copies that move in step have one pose.
-        self._latest: dict[int, tuple[float, Pose]] = {}
 
     def number_of(self, animation: str | int) -> int:
         """The position of an animation that is named by it or by its name.
@@ -44,14 +50,11 @@ class Clips:
         """How long an animation is, in seconds."""
         return self._model.animations[number].duration
 
-    def pose(self, number: int, time: float) -> Pose:
-        """The pose of an animation at a time in seconds; not to be written.
+    def poses(self, number: int, times: Array) -> Poses:
+        """The poses of an animation at ``times`` (P,) in seconds.
 
         What it does not move is as the file has it.
         """
-        latest = self._latest.get(number)
-        if latest is not None and latest[0] == time:
-            return latest[1]
         sampler = self._samplers.get(number)
         if sampler is None:
             channels = self._model.animations[number].channels
@@ -59,10 +62,11 @@ class Clips:
                 channels,
                 [self.layout.places(channel.target) for channel in channels],
             )
-        pose = {
-            name: column.copy() for name, column in self.layout.rest.items()
-        }
-        for property_, places, values in sampler.sample(time):
-            pose[property_][places] = values
-        self._latest[number] = time, pose
-        return pose
+        poses = self.layout.rest_poses(len(times))
+        for property_, places, values in sampler.sample(times):
+            poses[property_][:, places] = values
+        return poses
+
+    def pose(self, number: int, time: float) -> Poses:
+        """The one pose of an animation at a time in seconds."""
+        return self.poses(number, np.array([time]))

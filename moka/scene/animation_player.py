@@ -1,17 +1,20 @@
 """Plays animations: clocks, cross-fades, and when a pose is due."""
 
 import math
+from collections import defaultdict
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from moka.core.errors import OptionError
-from moka.scene.animated_model import AnimatedModel
 from moka.scene.animation_clips import Clips
-from moka.scene.animation_pose import Pose, blended
+from moka.scene.animation_pose import blended
 
 if TYPE_CHECKING:
     from moka.scene.scene_model import SceneModel
 
-__all__ = ["AnimationPlayer", "Playback"]
+__all__ = ["AnimationPlayer", "Playback", "apply_poses"]
 
 
 class Playback:
@@ -37,7 +40,7 @@ class Playback:
         self.speed = _finite(speed, "the speed")
         self.loop = loop
         self.weight = 1.0
-        self.fade = 0.0  # What the weight grows by in a second.
+        self.fade = 0.0  # In how many seconds the weight grows to 1.
         self.time = time
 
     @property
@@ -69,7 +72,8 @@ class Playback:
         """Let ``delta`` seconds pass."""
         self.time = self._time + delta * self.speed
         if self.fade:
-            self.weight = min(max(self.weight + delta * self.fade, 0.0), 1.0)
+            grown = self.weight + delta / self.fade
+            self.weight = min(max(grown, 0.0), 1.0)
             if self.weight == 1:
                 self.fade = 0.0
 
@@ -90,7 +94,7 @@ class AnimationPlayer:
     def __init__(self, model: "SceneModel", clips: Clips) -> None:
         self._clips = clips
         self._model = model
-        self._animated = AnimatedModel(model, clips.layout)
+        self._copy = clips.copies.add(model)
         self._layers: list[Playback] = []
         self._shown: tuple[tuple[int, float, float], ...] = ()
         self.paused = False
@@ -138,7 +142,7 @@ class AnimationPlayer:
             raise OptionError(f"animation: a fade of {fade} s is negative")
         layer = self._layer(animation, loop=loop, speed=speed, start=start)
         if fade:
-            layer.weight, layer.fade = 0.0, 1 / fade
+            layer.weight, layer.fade = 0.0, fade
         else:
             self._layers.clear()
         self._layers.append(layer)
@@ -202,7 +206,7 @@ class AnimationPlayer:
         self._layers[-1].time = time
 
     def advance(self, delta: float) -> None:
-        """Let ``delta`` seconds pass, unless paused; see :meth:`apply`."""
+        """Let ``delta`` seconds pass, unless paused; see apply_poses."""
         if self.paused:
             return
         fading = [layer for layer in self._layers if layer.fade]
@@ -213,31 +217,29 @@ class AnimationPlayer:
                 # It covers all that played before, which ends so.
                 del self._layers[: self._layers.index(layer)]
 
-    def apply(self) -> None:
-        """Write the pose of now; costs nothing if it is that of before."""
+    def close(self) -> None:
+        """Forget the model, which is not in its scene any more."""
+        self._clips.copies.remove(self._copy)
+
+    def _due(self) -> list[Playback] | None:
+        """What covers all else, and what shows over it, if that is news."""
         shown = tuple(
             (layer.animation, layer.time, layer.weight)
             for layer in self._layers
         )
         if shown == self._shown:
-            return
+            return None
         self._shown = shown
-        self._animated.take(self._pose())
+        covering = [n for n, each in enumerate(shown) if each[2] == 1]
+        return self._layers[covering[-1] if covering else 0 :]
 
-    def _pose(self) -> Pose:
-        """What the layers show together, over the pose of the file."""
-        pose = self._clips.layout.rest
-        covering = [
-            n for n, each in enumerate(self._layers) if each.weight == 1
-        ]
-        for layer in self._layers[covering[-1] if covering else 0 :]:
+    def _blend(self, layers: Iterable[Playback]) -> None:
+        """Take the pose that layers show together over that of the file."""
+        pose = self._clips.layout.rest_poses(1)
+        for layer in layers:
             above = self._clips.pose(layer.animation, layer.time)
-            pose = (
-                above
-                if layer.weight == 1
-                else blended(pose, above, layer.weight)
-            )
-        return pose
+            pose = blended(pose, above, layer.weight)
+        self._clips.copies.take([self._copy], pose)
 
     def _layer(
         self, animation: str | int, *, loop: bool, speed: float, start: float
@@ -250,6 +252,27 @@ class AnimationPlayer:
             speed=speed,
             loop=loop,
         )
+
+
+def apply_poses(players: Iterable[AnimationPlayer]) -> None:
+    """Let models have the poses that their players show now.
+
+    Costs nothing for those that show what they did before. Copies of one
+    model that play one animation are sampled together.
+    """
+    crowds: dict[tuple[Clips, int], dict[int, float]] = defaultdict(dict)
+    for player in players:
+        layers = player._due()
+        if layers is None:
+            continue
+        if len(layers) == 1 and layers[0].weight == 1:
+            crowd = crowds[player._clips, layers[0].animation]
+            crowd[player._copy] = layers[0].time
+        else:
+            player._blend(layers)
+    for (clips, animation), members in crowds.items():
+        times = np.array(list(members.values()))
+        clips.copies.take(list(members), clips.poses(animation, times))
 
 
 def _finite(value: float, what: str) -> float:

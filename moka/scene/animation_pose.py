@@ -18,10 +18,10 @@ from moka.scene.animated_material import material_value
 from moka.scene.forest import Rows
 from moka.scene.morph_weights import MorphWeights
 
-__all__ = ["Pose", "PoseLayout", "blended"]
+__all__ = ["PoseLayout", "Poses", "blended"]
 
-#: Columns float64 (N, C) by property.
-Pose = dict[Property, Array]
+#: Columns float64 (P, N, C) of P poses by property.
+Poses = dict[Property, Array]
 
 _TRANSFORM = ("translation", "rotation", "scale")
 _LARGEST = float(np.finfo(np.float32).max)
@@ -32,8 +32,8 @@ class PoseLayout:
 
     ``things`` (N,) holds for each property, sorted, rows of nodes, positions
     of materials, lights or cameras, and for weights positions in the values
-    of :class:`MorphWeights`. ``rest`` is the pose of the file when nothing
-    plays.
+    of :class:`MorphWeights`. ``rest`` holds the columns (N, C) of the pose
+    of the file, when nothing plays.
     """
 
     def __init__(self, model: Model) -> None:
@@ -53,7 +53,7 @@ class PoseLayout:
             property_: np.array(sorted(things), np.intp)
             for property_, things in found.items()
         }
-        self.rest: Pose = {
+        self.rest: dict[Property, Array] = {
             property_: _rest(model, weights, property_, things)
             for property_, things in self.things.items()
         }
@@ -64,6 +64,13 @@ class PoseLayout:
             for name, column in zip(_TRANSFORM, parts, strict=True):
                 self.things["node", name] = nodes
                 self.rest["node", name] = column
+
+    def rest_poses(self, count: int) -> Poses:
+        """The pose of the file so many times, to be written into."""
+        return {
+            property_: np.repeat(column[None], count, axis=0)
+            for property_, column in self.rest.items()
+        }
 
     def places(self, target: AnimationTarget) -> Rows:
         """The rows of a target in the column of its property."""
@@ -80,15 +87,15 @@ class PoseLayout:
         return all_of_node[[target.element]]
 
 
-def blended(first: Pose, second: Pose, weight: float) -> Pose:
-    """The pose between two of one model: ``first`` at 0, ``second`` at 1.
+def blended(first: Poses, second: Poses, weight: float) -> Poses:
+    """Poses between two of one model: ``first`` at 0, ``second`` at 1.
 
     Rotations turn the shorter way, visibility is that of the nearer pose,
     everything else goes straight.
     """
     result = {}
     for property_, column in first.items():
-        along = np.broadcast_to(weight, len(column))
+        along = np.broadcast_to(weight, column.shape[:-1])
         if property_ == ("node", "rotation"):
             result[property_] = slerp(column, second[property_], along)
         elif property_ == ("node", "visible"):

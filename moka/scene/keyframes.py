@@ -64,27 +64,28 @@ class KeyframeSampler:
             for (property_, interpolation, _), indices in members.items()
         ]
 
-    def sample(self, time: float) -> Iterator[tuple[Property, Rows, Array]]:
-        """What every property is at ``time`` in seconds.
+    def sample(self, times: Array) -> Iterator[tuple[Property, Rows, Array]]:
+        """What every property is at ``times`` (T,) in seconds.
 
         Properties, the places (P,) of their values in the property's column,
-        and the values, float64 (P, C). Before its first keyframe a channel
+        and the values, float64 (T, P, C). Before its first keyframe a channel
         has the first value, after its last one the last (glTF 2.0, 3.11).
         """
-        moment = self._timeline.locate(time)
+        moments = self._timeline.locate(times)
         for group in self._groups:
-            values = group.sample(moment)
+            values = group.sample(moments)
+            # Weights of one node are of many places.
             yield (
                 group.property,
                 group.places,
-                values.reshape(len(group.places), -1),
+                values.reshape(len(times), len(group.places), -1),
             )
 
 
-class _Moment(Struct, frozen=True):
-    """Where a time lies in each set of times (U,).
+class _Moments(Struct, frozen=True):
+    """Where times lie in each set of times (T, U).
 
-    Rows of the keyframes around it, 0 to 1 between these, and the seconds
+    Rows of the keyframes around them, 0 to 1 between these, and the seconds
     from one to the other.
     """
 
@@ -121,25 +122,25 @@ class _Timeline:
         self._prefix = np.arange(len(sets), dtype=np.uint64) << np.uint64(32)
         self._keys = np.repeat(self._prefix, counts) | joined.view(np.uint32)
 
-    def locate(self, time: float) -> _Moment:
-        """The keyframes around ``time``, exact for float64 times."""
-        time = min(max(time, 0.0), _LATEST)
-        # The last float32 that is not later than it: no keyframe is between.
-        bound = np.float32(time)
-        if float(bound) > time:
-            bound = np.nextafter(bound, np.float32(0))
+    def locate(self, times: Array) -> _Moments:
+        """The keyframes around ``times`` (T,), exact for float64 times."""
+        times = np.clip(times, 0.0, _LATEST)
+        # The last float32 that is not later: no keyframe is between.
+        bounds = times.astype(np.float32)
+        late = bounds > times
+        bounds[late] = np.nextafter(bounds[late], np.float32(0))
         found = np.searchsorted(
             self._keys,
-            self._prefix | np.uint64(bound.view(np.uint32)),
+            self._prefix | bounds.view(np.uint32)[:, None],
             side="right",
         )
         before = np.maximum(found - 1, self.starts)
         after = np.minimum(before + 1, self._ends)
         start = self._times[before]
         span = self._times[after] - start
-        fraction = np.zeros(len(span))
-        np.divide(time - start, span, out=fraction, where=span > 0)
-        return _Moment(before, after, np.maximum(fraction, 0), span)
+        fraction = np.zeros(span.shape)
+        np.divide(times[:, None] - start, span, out=fraction, where=span > 0)
+        return _Moments(before, after, np.maximum(fraction, 0), span)
 
 
 class _Group(Struct, frozen=True, eq=False):
@@ -157,27 +158,27 @@ class _Group(Struct, frozen=True, eq=False):
     offsets: Rows
     values: NDArray[np.float32]
 
-    def sample(self, moment: _Moment) -> Array:
-        """The values (G, C) at a moment."""
+    def sample(self, moments: _Moments) -> Array:
+        """The values (T, G, C) at T moments."""
         turns = self.property == _ROTATION
-        before = self.offsets + moment.before[self.sets]
+        before = self.offsets + moments.before[:, self.sets]
         first = self.values[before].astype(np.float64)
         if self.interpolation is Interpolation.STEP:
             return _unit(first) if turns else first
-        after = self.offsets + moment.after[self.sets]
+        after = self.offsets + moments.after[:, self.sets]
         second = self.values[after].astype(np.float64)
-        fraction = moment.fraction[self.sets]
+        fraction = moments.fraction[:, self.sets]
         if self.interpolation is Interpolation.LINEAR:
             if turns:
                 return slerp(_unit(first), _unit(second), fraction)
             return lerp(first, second, fraction)
         values = hermite(
-            first[:, 1],
-            first[:, 2],
-            second[:, 0],
-            second[:, 1],
+            first[..., 1, :],
+            first[..., 2, :],
+            second[..., 0, :],
+            second[..., 1, :],
             fraction,
-            moment.span[self.sets],
+            moments.span[:, self.sets],
         )
         return _unit(values) if turns else values
 
@@ -194,10 +195,10 @@ def _offsets(
 
 
 def _unit(quaternions: Array) -> Array:
-    """Quaternions (G, 4) of length 1; that of length 0, no turn, stays.
+    """Quaternions (..., 4) of length 1; that of length 0, no turn, stays.
 
     Squares of float32 numbers neither vanish nor overflow in float64.
     """
-    squared = np.einsum("ij,ij->i", quaternions, quaternions)
-    length = np.sqrt(squared)[:, None]
+    squared = np.einsum("...i,...i->...", quaternions, quaternions)
+    length = np.sqrt(squared)[..., None]
     return np.asarray(quaternions / np.where(length > 0, length, 1))

@@ -186,7 +186,9 @@ class Scene:
         """
         if isinstance(item, SceneModel) and item in self._models:
             del self._models[item]
-            self._players.pop(item, None)
+            player = self._players.pop(item, None)
+            if player is not None:
+                player.close()
             if self.live_materials is not None:
                 self.live_materials.forget(item.own_materials.values())
             self.structure_version += 1
@@ -229,12 +231,11 @@ class Scene:
         """
         for player in self._players.values():
             player.advance(delta)
-            player.apply()
+        self._apply_poses()
 
     def update(self) -> None:
         """Bring all arrays up to date; costs nothing if nothing changed."""
-        for player in self._players.values():
-            player.apply()
+        self._apply_poses()
         self.transforms.update()
         models = self._models
         if self._built[0] != self.structure_version:
@@ -317,6 +318,12 @@ class Scene:
             self.transforms.world[rows] if rows else np.empty((0, 4, 4)),
             origin,
         )
+
+    def _apply_poses(self) -> None:
+        if self._players:
+            from moka.scene.animation_player import apply_poses
+
+            apply_poses(self._players.values())
 
     def _joined(self, transform: Transform | ArrayLike | None) -> Transform:
         """A transform of this scene for one that is given."""

@@ -73,7 +73,9 @@ def report(name: str, source: ModelSource) -> None:
     places = [clips.layout.places(each.target) for each in animation.channels]
     sampler = KeyframeSampler(animation.channels, places)
     step = animation.duration / 97 or 1.0
-    results["sample"] = timed(lambda run: list(sampler.sample(run * step)))
+    results["sample"] = timed(
+        lambda run: list(sampler.sample(np.array([run * step])))
+    )
     results["pose"] = timed(lambda run: clips.pose(number, run * step))
     model.animations.play(number)
 

@@ -105,6 +105,24 @@ def test_the_rest_pose_keeps_the_parts_of_a_mirrored_node() -> None:
     np.testing.assert_array_equal(rest.scale, [(-1, 1, 2)])
 
 
+def test_weights_of_a_mesh_with_instances_are_those_of_each() -> None:
+    file = AnimatedFile(2)
+    file.morph_targets(2)
+    places = file.accessor(np.zeros((3, 3)))
+    file.document["nodes"][0]["extensions"] = {
+        "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}}
+    }
+    file.document["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
+    file.channel((0, "weights"), [0, 1], np.eye(2).ravel())
+    file.channel((0, "translation"), [0], [(1.0, 2.0, 3.0)])
+    model = load_model(file.glb())
+    *weights, moved = model.animations[0].channels
+    rows = [channel.target.index for channel in weights]
+    assert len(rows) == 3
+    assert (model.nodes.mesh[rows] == 0).all()
+    assert (model.nodes.parents[rows] == moved.target.index).all()
+
+
 def test_a_channel_without_a_node_is_counted_and_left_out() -> None:
     file = AnimatedFile()
     file.channel((0, "translation"), TIMES, UP)
@@ -207,9 +225,9 @@ def test_a_broken_animation_is_refused(
     [
         ([0.0, 1.0, 1.0], "must increase; 1 s follows 1 s at keyframe 2"),
         ([0.0, 2.0, 1.0], "must increase; 1 s follows 2 s at keyframe 2"),
-        ([-1.0, 0.0, 1.0], "that are no time from 0 on"),
-        ([0.0, 1.0, np.inf], "that are no time from 0 on"),
-        ([0.0, np.nan, 1.0], "that are no time from 0 on"),
+        ([-1.0, 0.0, 1.0], "must hold finite times from 0 s on"),
+        ([0.0, 1.0, np.inf], "must hold finite times from 0 s on"),
+        ([0.0, np.nan, 1.0], "must hold finite times from 0 s on"),
         ([0.0, 1.0], "has 3 elements, and the keyframes need 2"),
     ],
 )

@@ -232,6 +232,40 @@ def test_copies_play_on_their_own(scene: Scene) -> None:
     assert (x_of(scene, first), x_of(scene, second)) == (1, 3)
 
 
+def test_a_crowd_moves_as_each_of_it_alone(scene: Scene) -> None:
+    model = load_model(moving_file().glb())
+    crowd = [scene.add(model) for _ in range(6)]
+    crowd.append(scene.add(model))
+    crowd[2].animations.play("turn")
+    crowd.pop(2).remove()  # Its place goes to the next.
+    crowd.append(scene.add(model))
+
+    def start(copy: SceneModel, index: int) -> None:
+        player = copy.animations
+        if index % 3 == 2:
+            player.blend("slide", "turn", 0.3, speed=1 + 0.1 * index)
+        else:
+            player.play(index % 2, start=0.1 * index, loop=index != 4)
+
+    for index, copy in enumerate(crowd):
+        start(copy, index)
+    for _ in range(9):
+        scene.animate(0.13)
+    scene.update()
+    for index, copy in enumerate(crowd):
+        alone = Scene()
+        other = alone.add(model)
+        start(other, index)
+        for _ in range(9):
+            alone.animate(0.13)
+        alone.update()
+        np.testing.assert_allclose(
+            scene.transforms.world[copy.rows],
+            alone.transforms.world[other.rows],
+            atol=1e-15,
+        )
+
+
 def test_a_still_pose_costs_nothing(scene: Scene, model: SceneModel) -> None:
     player = model.animations
     player.pose("slide", 1.0)
