@@ -8,12 +8,13 @@ told in the window, and the picture stays as it was.
 import math
 import os
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from moka.app.application import App, GameTime
 from moka.app.command_text import command_text
@@ -46,6 +47,9 @@ from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
 from moka.ui.panels.help import draw_help
 from moka.ui.panels.panel import Panel
 from moka.ui.panels.picture import PicturePanel
+from moka.ui.panels.scene_tree import SceneTreePanel
+from moka.ui.picking import begin_pick, finish_pick
+from moka.ui.selection import draw_box
 
 __all__ = ["Viewer"]
 
@@ -57,6 +61,9 @@ _FRAMES_TO_SETTLE = 3
 
 # A drag is not a click when the pointer has moved by more than this.
 _CLICK = 4.0
+
+# Seconds within which a second click makes a double click.
+_DOUBLE_CLICK = 0.4
 
 # Distances to the target per second of flight.
 _FLIGHT = 1.0
@@ -92,6 +99,7 @@ class Viewer(App):
             PicturePanel(),
             EnvironmentPanel(),
             LightingPanel(),
+            SceneTreePanel(),
         ]
         self.interface: Interface
         self._work = BackgroundWork(self.request_redraw)
@@ -99,6 +107,8 @@ class Viewer(App):
         self._wants_picture: Path | None = None
         self._settling = 0
         self._pressed_at: tuple[float, float] | None = None
+        self._clicked = 0.0
+        self._wants_pick: tuple[tuple[float, float], bool] | None = None
         self._camera_number = -1
 
     # What an App does.
@@ -158,6 +168,7 @@ class Viewer(App):
             self._remove_model()
             self.renderer.draw(self.scene, self.camera, commands)
         self._read_picture(commands)
+        self._pick(commands, size)
         with self.interface.frame(size, time.delta) as imgui:
             self._draw_interface(imgui, size)
         self.interface.draw(commands, SortKey(PASS_INTERFACE), None, pixels)
@@ -301,7 +312,14 @@ class Viewer(App):
             is_ours = not self.interface.wants_pointer
             self._pressed_at = (event.x, event.y) if is_ours else None
             return
-        self._pressed_at = None
+        pressed, self._pressed_at = self._pressed_at, None
+        if pressed is None or math.dist(pressed, (event.x, event.y)) > _CLICK:
+            return
+        if event.button is MouseButton.LEFT:
+            now = perf_counter()
+            is_double = now - self._clicked < _DOUBLE_CLICK
+            self._clicked = 0.0 if is_double else now
+            self._wants_pick = (event.x, event.y), is_double
 
     def _drag(self, event: MouseMoveEvent) -> None:
         mouse = self.input.mouse
@@ -472,6 +490,36 @@ class Viewer(App):
 
         self.when_read([read], save)
 
+    def _pick(self, commands: CommandList, window: tuple[int, int]) -> None:
+        """Find out what was clicked; twice, and go around it from now on."""
+        wanted, self._wants_pick = self._wants_pick, None
+        if wanted is None or self.model is None:
+            return
+        (x, y), is_double = wanted
+        size = self.renderer.size
+        pixel = (
+            int(x / (window[0] - self._column_width()) * size[0]),
+            int(y / window[1] * size[1]),
+        )
+        if not (0 <= pixel[0] < size[0] and 0 <= pixel[1] < size[1]):
+            return
+        read = begin_pick(
+            self.renderer, self.scene, self.camera, pixel, commands
+        )
+
+        def then() -> None:
+            picked = finish_pick(read, self.camera, pixel, size)
+            if picked is None or self.model is None:
+                self.selection = None
+                return
+            nodes = self.model.model.nodes
+            self.selection = nodes.row_of_number(picked.number - 1)
+            if is_double:
+                self.controls.set_pivot(picked.point.tolist())
+                self._look()
+
+        self.when_read(list(read.values()), then)
+
     def when_read(
         self, reads: list[Readback], then: Callable[[], None]
     ) -> None:
@@ -491,6 +539,11 @@ class Viewer(App):
     # The panels.
 
     def _draw_interface(self, imgui: Any, size: tuple[int, int]) -> None:
+        if self.model is not None and self.selection is not None:
+            box = self._bounds_of(self.selection)
+            if box is not None:
+                area = (size[0] - self._column_width(), size[1])
+                draw_box(imgui, box, self.camera, area)
         if self.shows_panels:
             self._draw_column(imgui, size)
         self.shows_help = draw_help(imgui, is_open=self.shows_help)

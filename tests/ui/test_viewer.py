@@ -181,3 +181,25 @@ def test_a_still_window_draws_nothing(watch: Watch) -> None:
         assert len(drawn) <= before + 1
 
     watch(story)
+
+
+def test_a_click_selects_and_two_make_a_pivot(watch: Watch) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        box = (0, 0, *SIZE)
+        person.wait("a picture", lambda: is_red(person.look(box)).any())
+        person.act(f"mousemove {viewer.renderer.size[0] // 2} 150 click 1")
+        person.wait("a selection", lambda: viewer.selection == 0)
+        person.act("mousemove 5 5 click 1")
+        person.wait("nothing selected", lambda: viewer.selection is None)
+
+        x = viewer.renderer.size[0] // 2 + 20
+        person.act(f"mousemove {x} 140 click --repeat 2 --delay 20 1")
+        person.wait(
+            "a pivot", lambda: bool(np.abs(viewer.controls.target).max() > 0.1)
+        )
+        # On the surface of the cube, whose edges are 1.
+        assert np.abs(viewer.controls.target).max() == pytest.approx(
+            0.5, abs=1e-3
+        )
+
+    watch(story)
