@@ -63,8 +63,8 @@ class CommandRunner:
             case FillBuffer(buffer, data, offset):
                 self._get(buffer).write(data, offset)
                 self.uploaded += len(data)
-            case FillTexture(texture, data, row, row_count):
-                self._get(texture).write_rows(data, row, row_count)
+            case FillTexture(texture, data, first):
+                self._get(texture).write(data, first)
                 self.uploaded += len(data)
             case GenerateMipmaps(texture):
                 self._get(texture).generate_mipmaps()

@@ -37,6 +37,7 @@ def read_info(
         version=info["GL_VERSION"],
         max_samples=info["GL_MAX_SAMPLES"],
         max_texture_size=info["GL_MAX_TEXTURE_SIZE"],
+        max_buffer_texels=info["GL_MAX_TEXTURE_BUFFER_SIZE"],
         max_uniform_block_size=info["GL_MAX_UNIFORM_BLOCK_SIZE"],
         uniform_alignment=info["GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT"],
         max_texture_units=info["GL_MAX_TEXTURE_IMAGE_UNITS"],

@@ -62,6 +62,7 @@ class GlProgram:
     def __init__(
         self,
         context: Any,
+        gl: Functions,
         descriptor: ProgramDescriptor,
         blocks: BlockRegistry,
         explain: Callable[[str, ProgramDescriptor], str],
@@ -89,7 +90,9 @@ class GlProgram:
                 self.blocks[name] = (member.binding, member.size)
             elif isinstance(member, Uniform):
                 # Plain uniforms are samplers here; values live in blocks.
-                member.value = len(self.samplers)
+                # ModernGL has no word for those of buffer textures.
+                gl.UseProgram(self.name)
+                gl.Uniform1i(member.location, len(self.samplers))
                 self.samplers[name] = len(self.samplers)
 
     def release(self) -> None:

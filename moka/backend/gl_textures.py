@@ -76,23 +76,6 @@ class GlTexture:
         self._bind()
         self._gl.GenerateMipmap(self.target)
 
-    def write_rows(self, data: bytes, row: int, row_count: int) -> None:
-        """Replace rows of level 0 of a 2D texture."""
-        descriptor = self.descriptor
-        _, layout, kind = c.pixel_format(descriptor.format)
-        self._bind()
-        self._gl.TexSubImage2D(
-            self.target,
-            0,
-            0,
-            row,
-            descriptor.width,
-            row_count,
-            layout,
-            kind,
-            data,
-        )
-
     def read(self, level: int, face: int) -> NDArray[Any]:
         """The texels of one level: (height, width, channels)."""
         descriptor = self.descriptor

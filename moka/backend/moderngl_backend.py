@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from moka.backend import gl_constants as c
 from moka.backend.batching import INDIRECT, Batches, MeshTable, merge_draws
 from moka.backend.contexts import GraphicsContext, WindowContext
+from moka.backend.gl_buffer_texture import GlBufferTexture
 from moka.backend.gl_commands import CommandRunner
 from moka.backend.gl_functions import Functions
 from moka.backend.gl_info import read_info
@@ -40,6 +41,7 @@ from moka.commands.descriptors import (
     ProgramDescriptor,
     ShaderText,
     TextureDescriptor,
+    TextureKind,
 )
 from moka.commands.draws import INSTANCE
 from moka.commands.handles import Handle, ResourceKind
@@ -124,16 +126,18 @@ class ModernGLBackend:
         data: TextureData | None,
     ) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
-        if max(descriptor.width, descriptor.height) > (
-            self.info.max_texture_size
-        ):
+        kind: type[GlTexture | GlBufferTexture] = GlTexture
+        largest = self.info.max_texture_size
+        if descriptor.kind is TextureKind.BUFFER:
+            kind, largest = GlBufferTexture, self.info.max_buffer_texels
+        if max(descriptor.width, descriptor.height) > largest:
             raise DeviceError(
                 f"texture {descriptor.label}: {descriptor.width}x"
                 f"{descriptor.height} is larger than this driver's "
-                f"{self.info.max_texture_size}"
+                f"{largest}"
             )
         with self._timed("upload"):
-            self._put(handle, GlTexture(self._gl, descriptor, data))
+            self._put(handle, kind(self._gl, descriptor, data))
         self._uploaded += sum(level.nbytes for level in data or ())
         self._check_errors(f"texture {descriptor.label}")
 
@@ -144,7 +148,11 @@ class ModernGLBackend:
         with self._timed("compile"):
             try:
                 program = GlProgram(
-                    self._ctx, descriptor, self._blocks, self._explain_log
+                    self._ctx,
+                    self._gl,
+                    descriptor,
+                    self._blocks,
+                    self._explain_log,
                 )
             except ShaderError:
                 # The driver reports the same fault as a debug message.

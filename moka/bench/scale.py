@@ -21,6 +21,10 @@ SIZES = {
     "lights": (1, 2, 4, 8, 16, 32, 64),
     "pixels": (256, 512, 1024, 2048, 4096),
     "textures": (256, 512, 1024, 2048, 4096),
+    # Skinned and moving, skinned and still, and not skinned.
+    "characters": (1, 10, 100),
+    "standing": (1, 10, 100),
+    "statues": (1, 10, 100),
 }
 
 
@@ -115,6 +119,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _makers() -> "dict[str, Callable[[int], Subject]]":
+    from moka.bench import character_scenes as crowds
     from moka.bench import scale_scenes as scenes
 
     return {
@@ -124,6 +129,9 @@ def _makers() -> "dict[str, Callable[[int], Subject]]":
         "lights": scenes.of_lights,
         "pixels": scenes.of_pixels,
         "textures": scenes.of_textures,
+        "characters": crowds.of_characters,
+        "standing": crowds.of_standing,
+        "statues": crowds.of_statues,
     }
 
 

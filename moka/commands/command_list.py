@@ -104,16 +104,14 @@ class CommandBuffer:
         self._entries.append(FillBuffer(buffer, bytes(content), offset))
 
     def fill_texture(
-        self, texture: Handle, rows: NDArray[Any], row: int = 0
+        self, texture: Handle, texels: NDArray[Any], first: int = 0
     ) -> None:
-        """Write ``rows`` (R, width, channels), copied now, from ``row`` on.
+        """Write ``texels`` (N, channels), copied now, from ``first`` on.
 
-        They go to level 0 of a 2D texture, in its own format.
+        Into a texture of the kind BUFFER, in its own format.
         """
         self._use(texture, ResourceKind.TEXTURE)
-        self._entries.append(
-            FillTexture(texture, rows.tobytes(), row, len(rows))
-        )
+        self._entries.append(FillTexture(texture, texels.tobytes(), first))
 
     def generate_mipmaps(self, texture: Handle) -> None:
         """Make the lower mip levels of ``texture`` from level 0."""
@@ -313,13 +311,13 @@ class CommandList:
     def fill_texture(
         self,
         texture: Handle,
-        rows: NDArray[Any],
-        row: int = 0,
+        texels: NDArray[Any],
+        first: int = 0,
         *,
         key: SortKey | int | None = None,
     ) -> None:
         """:meth:`CommandBuffer.fill_texture` in a buffer of its own."""
-        self.command_buffer(key).fill_texture(texture, rows, row)
+        self.command_buffer(key).fill_texture(texture, texels, first)
 
     def generate_mipmaps(
         self, texture: Handle, *, key: SortKey | int | None = None

@@ -66,15 +66,14 @@ class FillBuffer(Struct, frozen=True):
 
 
 class FillTexture(Struct, frozen=True):
-    """Write rows of texels from row ``row`` on of level 0 of ``texture``.
+    """Write texels, from number ``first`` on, of a buffer texture.
 
-    ``data`` holds whole rows in the texture's own format.
+    ``data`` holds them in the texture's own format.
     """
 
     texture: Handle
     data: bytes
-    row: int
-    row_count: int
+    first: int = 0
 
 
 class GenerateMipmaps(Struct, frozen=True):

@@ -138,6 +138,8 @@ class TextureKind(Enum):
 
     TEXTURE_2D = "2d"
     CUBE = "cube"
+    # One row of texels that is only read by their numbers: samplerBuffer.
+    BUFFER = "buffer"
 
 
 class TextureDescriptor(Struct, frozen=True):

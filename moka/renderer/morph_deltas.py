@@ -12,17 +12,19 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.commands.descriptors import PixelFormat, TextureDescriptor
+from moka.commands.descriptors import (
+    PixelFormat,
+    TextureDescriptor,
+    TextureKind,
+)
 from moka.commands.handles import Handle
 from moka.core.errors import ModelError
 from moka.graphics.device import GraphicsDevice
 from moka.material.description import MORPH_TEXELS, morph_texels
 from moka.model.morphs import MorphTargets
 
-__all__ = ["DELTA_ROW_BITS", "MorphDeltas", "TargetPlaces"]
+__all__ = ["MorphDeltas", "TargetPlaces"]
 
-# A row of 4096 texels, which everything that speaks OpenGL 3.3 has.
-DELTA_ROW_BITS = 12
 # Targets begin at multiples of this, so that a float32 holds where.
 _ALIGNMENT = 16
 
@@ -81,22 +83,22 @@ class MorphDeltas:
     def _upload(
         self, blocks: Sequence[NDArray[np.float32]], count: int
     ) -> Handle:
-        width = 1 << DELTA_ROW_BITS
-        height = max(1, -(-count // width))
-        largest = self._device.info.max_texture_size
-        if height > largest:
+        largest = self._device.info.max_buffer_texels
+        if count > largest:
             raise ModelError(
-                f"morph targets: {count} deltas are more than the "
-                f"{width * largest} that this driver holds in a texture"
+                f"morph targets: {count} deltas are more than the {largest} "
+                "that this driver holds in a texture"
             )
-        texels = np.zeros((height * width, 4), np.float32)
-        if blocks:
-            texels[:count] = np.concatenate(blocks)
+        texels = np.concatenate([np.zeros((0, 4), np.float32), *blocks])
         return self._device.create_texture(
             TextureDescriptor(
-                PixelFormat.RGBA32F, width, height, label="morph deltas"
+                PixelFormat.RGBA32F,
+                max(count, 1),
+                1,
+                TextureKind.BUFFER,
+                label="morph deltas",
             ),
-            [texels.reshape(height, width, 4)],
+            [texels] if count else None,
         )
 
 

@@ -171,8 +171,6 @@ class Permutation(Struct, frozen=True):
             **defines_of(self.material),
             **self.lighting.defines(features),
         }
-        if self.material.deforms:
-            defines |= _texture_rows()
         blocks = FRAME.glsl
         blocks += materials_layout(has_transforms=self.has_transforms).glsl
         if "MOKA_PUNCTUAL_LIGHTS" in defines:
@@ -184,17 +182,6 @@ class Permutation(Struct, frozen=True):
             load_shader(f"{kind}.frag", defines, injected=blocks),
             f"{kind} ({names})",
         )
-
-
-def _texture_rows() -> dict[str, int]:
-    """How long the rows of the textures are that hold poses."""
-    from moka.renderer.morph_deltas import DELTA_ROW_BITS
-    from moka.renderer.pose_texture import POSE_ROW_BITS
-
-    return {
-        "MOKA_DELTA_ROW_BITS": DELTA_ROW_BITS,
-        "MOKA_POSE_ROW_BITS": POSE_ROW_BITS,
-    }
 
 
 def _macro(option: str) -> str:

@@ -1,10 +1,12 @@
 """The poses of a scene on the GPU: joint matrices and active morph targets.
 
-One texture, addressed by number, since it can hold what a uniform block
-cannot (16 KiB are 341 joints) and a vertex shader of OpenGL 3.3 reads it.
-Every skin and every morphed draw has its place for good, which instances
-name; a frame writes the rows of texels of what it shows and what has moved,
-in one call, and nothing where nothing has.
+A buffer texture: a vertex shader of OpenGL 3.3 reads it by number, it holds
+what a uniform block cannot (16 KiB are 341 joints), and on a software driver
+fetches from it take three quarters of the time of those from a 2D texture
+(``tests/benchmarks/bare_skinning.py``). Every skin and every morphed draw
+has its place for good, which instances name; a frame writes from the first
+to the last texel of what it shows and what has moved, in one call, and
+nothing where nothing has.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,6 +22,7 @@ from moka.commands.descriptors import (
     SamplerDescriptor,
     TextureBinding,
     TextureDescriptor,
+    TextureKind,
     Wrap,
 )
 from moka.commands.sort_key import SortKey
@@ -33,11 +36,7 @@ from moka.renderer.scene_materials import SceneMaterials
 from moka.scene.morph_poses import MorphGroup
 from moka.scene.poses import Poses
 
-__all__ = ["POSE_ROW_BITS", "PoseTexture"]
-
-# Rows of 4 KiB: what one character writes is a few of them.
-POSE_ROW_BITS = 8
-_WIDTH = 1 << POSE_ROW_BITS
+__all__ = ["PoseTexture"]
 
 # Texels are read one by one.
 _TEXELS = SamplerDescriptor(
@@ -85,19 +84,21 @@ class PoseTexture:
             ends = count + size * np.arange(1, len(group.draws) + 1)
             self.places[group.draws, 1] = ends - size
             count = int(ends[-1])
-        height = max(1, -(-count // _WIDTH))
-        if height > device.info.max_texture_size:
+        count = max(count, 1)
+        largest = device.info.max_buffer_texels
+        if count > largest:
             raise ModelError(
                 f"poses: {len(skins.rows)} joints and {count - joints} active "
-                "morph targets are more than this driver holds in a texture"
+                f"morph targets are more than the {largest} texels that this "
+                "driver holds in a texture"
             )
-        self._texels = np.zeros((height * _WIDTH, 4), np.float32)
+        self._texels = np.zeros((count, 4), np.float32)
         self._joints = self._texels[:joints].reshape(-1, 3, 4)
         self._written_skins = np.zeros(len(skins), np.int64)
         self._written_draws = np.zeros(len(poses.skin), np.int64)
         self.texture = device.create_texture(
             TextureDescriptor(
-                PixelFormat.RGBA32F, _WIDTH, height, label="poses"
+                PixelFormat.RGBA32F, count, 1, TextureKind.BUFFER, label="poses"
             )
         )
 
@@ -128,20 +129,20 @@ class PoseTexture:
         """
         seen = np.zeros(len(self._poses.skin), np.bool_)
         seen[visible] = True
-        rows = self._write_skins(visible)
+        written = self._write_skins(visible)
         for group, places in self._groups:
-            rows += self._write_lists(group, places, seen, geometry)
-        if rows:
-            first, last = min(rows), max(rows) + 1
+            written += self._write_lists(group, places, seen, geometry)
+        if written:
+            first, last = min(written), max(written)
             commands.fill_texture(
                 self.texture,
-                self._texels.reshape(-1, _WIDTH, 4)[first:last],
+                self._texels[first : last + 1],
                 first,
                 key=SortKey(0),
             )
 
     def _write_skins(self, visible: NDArray[np.intp]) -> list[int]:
-        """The first and last row of texels that skins changed, if any."""
+        """The first and the last texel that skins changed, if any."""
         skins = self._poses.skins
         stale = np.zeros(len(skins) + 1, np.bool_)
         stale[self._poses.skin[visible]] = True
@@ -153,10 +154,7 @@ class PoseTexture:
         # What float32 cannot hold is infinite, and not drawn.
         with np.errstate(over="ignore"):
             self._joints[joints] = skins.matrices[joints]
-        return [
-            3 * int(joints[0]) // _WIDTH,
-            (3 * int(joints[-1]) + 2) // _WIDTH,
-        ]
+        return [3 * int(joints[0]), 3 * int(joints[-1]) + 2]
 
     def _write_lists(
         self,
@@ -165,7 +163,7 @@ class PoseTexture:
         seen: NDArray[np.bool_],
         geometry: GeometryPool,
     ) -> list[int]:
-        """The first and last row of texels that lists changed, if any."""
+        """The first and the last texel that lists changed, if any."""
         version = self._poses.morphs.version
         draws = group.draws
         stale = np.flatnonzero(
@@ -188,10 +186,7 @@ class PoseTexture:
         texel = first[row] + np.cumsum(active, axis=1)[row, target]
         self._texels[texel, 0] = weights[row, target]
         self._texels[texel, 1:] = places.entries[target]
-        return [
-            int(first.min()) // _WIDTH,
-            int((first + count).max()) // _WIDTH,
-        ]
+        return [int(first.min()), int((first + count).max())]
 
     def _find_deltas(
         self,

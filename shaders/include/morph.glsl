@@ -5,16 +5,10 @@
 #include "include/pose.glsl"
 
 #ifdef MOKA_MORPH_TEXELS
-uniform sampler2D morph_deltas;
+uniform samplerBuffer morph_deltas;
 
 // The sums, by MOKA_MORPH_POSITION and so on.
 vec4 morphed[MOKA_MORPH_TEXELS];
-
-vec4 delta_texel(int number) {
-    int row = number >> MOKA_DELTA_ROW_BITS;
-    int column = number & ((1 << MOKA_DELTA_ROW_BITS) - 1);
-    return texelFetch(morph_deltas, ivec2(column, row), 0);
-}
 
 // A list of poses begins with the number of active targets and where the
 // vertices of the mesh begin; for each target it has the weight, the first
@@ -22,15 +16,15 @@ vec4 delta_texel(int number) {
 void add_morph_targets() {
     for (int i = 0; i < MOKA_MORPH_TEXELS; ++i) morphed[i] = vec4(0.0);
     int list = int(instance_data.w);
-    vec4 head = pose_texel(list);
+    vec4 head = texelFetch(poses, list);
     int vertex = gl_VertexID - (int(head.y) * 4096 + int(head.z));
     for (int last = list + int(head.x); list < last;) {
-        vec4 target = pose_texel(++list);
+        vec4 target = texelFetch(poses, ++list);
         int moved = vertex - int(target.y);
         if (moved < 0 || moved >= int(target.z)) continue;
         int texel = 16 * int(target.w) + MOKA_MORPH_TEXELS * moved;
         for (int i = 0; i < MOKA_MORPH_TEXELS; ++i)
-            morphed[i] += target.x * delta_texel(texel + i);
+            morphed[i] += target.x * texelFetch(morph_deltas, texel + i);
     }
 }
 #endif

@@ -19,7 +19,8 @@ in vec4 weights_2;
 mat3x4 joint_rows(float joint) {
     int texel = int(instance_data.z) + 3 * int(joint);
     return mat3x4(
-        pose_texel(texel), pose_texel(texel + 1), pose_texel(texel + 2));
+        texelFetch(poses, texel), texelFetch(poses, texel + 1),
+        texelFetch(poses, texel + 2));
 }
 
 mat3x4 mean_of_joints(vec4 joints, vec4 weights) {

@@ -6,6 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from moka.bench.character_scenes import (
+    of_characters,
+    of_standing,
+    of_statues,
+)
 from moka.bench.scale import SIZES
 from moka.bench.scale_scenes import (
     Subject,
@@ -89,3 +94,22 @@ def test_an_unknown_series_is_one_line(
     message = capsys.readouterr().err
     assert "clouds" in message
     assert all(name in message for name in SIZES)
+
+
+def test_crowds_differ_only_in_what_moves() -> None:
+    moving, still, rigid = (
+        make(4) for make in (of_characters, of_standing, of_statues)
+    )
+    for subject in (moving, still, rigid):
+        assert visible(subject) == 4
+    np.testing.assert_allclose(
+        still.scene.bounds(), rigid.scene.bounds(), rtol=1e-6
+    )
+    versions = []
+    for subject in (moving, still):
+        first = subject.scene.pose_version
+        subject.advance(1)
+        subject.scene.update()
+        versions.append(subject.scene.pose_version - first)
+    assert versions == [1, 0]
+    assert rigid.scene.drawables.poses is None
