@@ -68,6 +68,8 @@ def _add_settings(add: Any, settings: RenderSettings) -> None:
             getattr(plain, name),
         )
     add("multiscatter", "on" if settings.multiscatter else "off", "on")
+    add("anisotropy", settings.anisotropy, plain.anisotropy)
+    add("max-texture-size", settings.max_texture_size, None)
     add("ibl", settings.ibl, plain.ibl)
     if settings.ibl == "reference":
         # It samples the environment as it is, with suns and all.

@@ -43,6 +43,8 @@ def render(
     ibl_samples: int | None = None,
     reference_samples: int | None = None,
     max_error: float | None = None,
+    anisotropy: int = 1,
+    max_texture_size: int | None = None,
     aov: str | Sequence[str] = (),
     full_textures: bool = False,
     backend: str = "auto",
@@ -83,7 +85,9 @@ def render(
     what else is wanted of the nearest surface of each pixel, any of
     ``depth``, ``normal``, ``albedo``, ``roughness``, ``metallic``,
     ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
-    :attr:`moka.Image.layers`, which an .exr file takes along. Without
+    :attr:`moka.Image.layers`, which an .exr file takes along. ``anisotropy``
+    is the most samples of a texture seen at a grazing angle, 1 to 16,
+    ``max_texture_size`` the most texels along a side that it keeps. Without
     ``full_textures`` mip levels that are too fine for the picture are left
     out. With ``cache`` lighting that was preintegrated before is read from
     disk, and new one is written there; the picture is the same.
@@ -120,6 +124,8 @@ def render(
         ibl_samples=ibl_samples,
         reference_samples=reference_samples,
         max_error=max_error,
+        anisotropy=anisotropy,
+        max_texture_size=max_texture_size,
         aov=aov,
         full_textures=full_textures,
         backend=backend,

@@ -180,7 +180,9 @@ class RenderSession:
                     width, height = request.size
                     scene.narrow(camera, width / height)
             with closing(MaterialPool(device, statistics)) as materials:
-                materials.begin(scene, still, request.size)
+                materials.begin(
+                    scene, still, request.size, request.settings.textures
+                )
                 # The images decode while this thread imports the rest.
                 from moka.lighting.disk_cache import DiskCache
                 from moka.renderer.renderer import Renderer

@@ -38,6 +38,8 @@ def read_info(
         max_samples=info["GL_MAX_SAMPLES"],
         max_texture_size=info["GL_MAX_TEXTURE_SIZE"],
         max_buffer_texels=info["GL_MAX_TEXTURE_BUFFER_SIZE"],
+        # 0 where the driver does not have the extension.
+        max_anisotropy=max(1.0, ctx.max_anisotropy),
         max_uniform_block_size=info["GL_MAX_UNIFORM_BLOCK_SIZE"],
         uniform_alignment=info["GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT"],
         max_texture_units=info["GL_MAX_TEXTURE_IMAGE_UNITS"],

@@ -160,10 +160,14 @@ class GlTexture:
 
 
 class SamplerCache:
-    """One GL sampler object per distinct descriptor."""
+    """One GL sampler object per distinct descriptor.
 
-    def __init__(self, gl: Functions) -> None:
+    ``max_anisotropy`` is the driver's, 1 without the extension.
+    """
+
+    def __init__(self, gl: Functions, max_anisotropy: float) -> None:
         self._gl = gl
+        self._max_anisotropy = max_anisotropy
         self._names: dict[tuple[SamplerDescriptor, bool], int] = {}
 
     def name(self, descriptor: SamplerDescriptor, has_levels: bool) -> int:
@@ -190,10 +194,9 @@ class SamplerCache:
             (c.TEXTURE_MIN_FILTER, c.MINIFY[descriptor.minify, mipmap]),
         ):
             gl.SamplerParameteri(name, parameter, value)
-        if descriptor.anisotropy > 1:
-            gl.SamplerParameterf(
-                name, c.TEXTURE_MAX_ANISOTROPY, descriptor.anisotropy
-            )
+        anisotropy = min(descriptor.anisotropy, self._max_anisotropy)
+        if anisotropy > 1:
+            gl.SamplerParameterf(name, c.TEXTURE_MAX_ANISOTROPY, anisotropy)
         return name
 
 

@@ -78,7 +78,7 @@ class ModernGLBackend:
             context, multi_draw=multi_draw, clip_control=clip_control
         )
         self._state = StateCache(self._gl)
-        self._samplers = SamplerCache(self._gl)
+        self._samplers = SamplerCache(self._gl, self.info.max_anisotropy)
         self._blocks = BlockRegistry()
         # Resources by the slots of their handles.
         self._resources: dict[tuple[ResourceKind, int], Any] = {}

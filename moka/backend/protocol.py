@@ -42,6 +42,7 @@ class BackendInfo(Struct, frozen=True):
     max_samples: int = 1
     max_texture_size: int = 2048
     max_buffer_texels: int = 65536
+    max_anisotropy: float = 1.0
     max_uniform_block_size: int = 16384
     uniform_alignment: int = 256
     max_texture_units: int = 16

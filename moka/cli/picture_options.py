@@ -178,6 +178,20 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         type=number,
         help="relative standard error at which --ibl reference stops",
     )
+    add(
+        "--anisotropy",
+        metavar="N",
+        type=count,
+        default=1,
+        help="samples of a texture seen at a grazing angle, up to 16 "
+        "(default: 1)",
+    )
+    add(
+        "--max-texture-size",
+        metavar="N",
+        type=count,
+        help="reduce textures with more than N texels along a side",
+    )
 
 
 def picture_request(
@@ -211,6 +225,8 @@ def picture_request(
         ibl_samples=arguments.ibl_samples,
         reference_samples=arguments.reference_samples,
         max_error=arguments.max_error,
+        anisotropy=arguments.anisotropy,
+        max_texture_size=arguments.max_texture_size,
         float_output=float_output,
     )
     _check_lighting(arguments, settings.ibl)

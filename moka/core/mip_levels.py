@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from moka.core.colour import decode_srgb, encode_srgb8
 
-__all__ = ["reduce_levels"]
+__all__ = ["halve_exactly", "reduce_levels"]
 
 #: Values worked on at a time, so that temporaries stay in the cache.
 _BLOCK = 1 << 16
@@ -153,8 +153,7 @@ def _halve(
     four values add up without a carry.
     """
     if _has_odd_size(linear):
-        exact = _halve_rows(linear.astype(np.float32))
-        exact = _halve_rows(exact.swapaxes(0, 1)).swapaxes(0, 1)
+        exact = halve_exactly(linear.astype(np.float32))
         return np.rint(exact).astype(np.uint16, order="C")
     height, width, channels = linear.shape
     halved: NDArray[np.uint16] = np.empty(
@@ -180,6 +179,11 @@ def _halve(
     return halved
 
 
+def halve_exactly(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The next level (h, w, C) of values of any size, not rounded."""
+    return _halve_rows(_halve_rows(values).swapaxes(0, 1)).swapaxes(0, 1)
+
+
 def _halve_rows(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Half as many rows, weighted by how much of each lies in a new one."""
     height = len(values)
@@ -203,11 +207,17 @@ def _encode(
 ) -> NDArray[Any]:
     if dtype == np.uint16:
         return linear
-    if not srgb:
-        return ((linear + np.uint16(128)) >> 8).astype(np.uint8)
-    codes = _encoding_table().take(linear)
-    if _has_alpha(linear):
-        codes[:, :, -1] = (linear[:, :, -1] + np.uint16(128)) >> 8
+    codes = np.empty(linear.shape, np.uint8)
+    table = _encoding_table() if srgb else None
+    step = max(1, _BLOCK // linear[0].size)
+    for start in range(0, len(linear), step):
+        rows, target = linear[start : start + step], codes[start : start + step]
+        if table is not None:
+            # Checking indices would make a copy of them.
+            table.take(rows, out=target, mode="clip")
+        if table is None or _has_alpha(linear):
+            plain = slice(-1 if srgb else None, None)
+            target[:, :, plain] = (rows[:, :, plain] + np.uint16(128)) >> 8
     return codes
 
 

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["pillow_texels"]
 
 
+# Less than the pieces of memory in which Pillow keeps large images.
+_BAND = 1 << 22
+
+
 class _ArrowArray(ctypes.Structure):
     pass
 
@@ -52,12 +56,21 @@ def pillow_texels(image: "Image") -> NDArray[np.uint8]:
     """
     image.load()
     channels = len(image.getbands())
-    if channels != 2:
-        try:
-            return _view(image, 1 if channels == 1 else 4)[:, :, :channels]
-        except (AttributeError, ValueError):
-            # Pillow before 11.2, or pixels in several pieces of memory.
-            pass
+    stored = 1 if channels == 1 else 4
+    try:
+        if channels != 2:
+            return _view(image, stored)[:, :, :channels]
+    except AttributeError:
+        pass  # Pillow before 11.2
+    except ValueError:
+        # In several pieces of memory: in bands, each of them in one.
+        texels = np.empty((image.height, image.width, stored), np.uint8)
+        rows = max(1, _BAND // (stored * image.width))
+        for start in range(0, image.height, rows):
+            end = min(start + rows, image.height)
+            band = image.crop((0, start, image.width, end))
+            texels[start:end] = _view(band, stored)
+        return texels[:, :, :channels]
     return np.asarray(image).reshape(image.height, image.width, channels)
 
 

@@ -14,6 +14,7 @@ from moka.backend.protocol import BackendInfo
 from moka.commands.descriptors import PixelFormat, TextureDescriptor
 from moka.core.encoded_image import EncodedImage
 from moka.core.ktx2 import Ktx2Texture, open_ktx2
+from moka.renderer.texture_settings import levels_beyond
 
 if TYPE_CHECKING:
     from moka.renderer.sampled_levels import SampledLevels
@@ -61,17 +62,22 @@ def transcode(
 ) -> tuple[TextureDescriptor, list[NDArray[Any]]] | None:
     """A texture with the levels of its file, as far as they are sampled.
 
-    None if levels are needed and the file has only the finest: then they
-    are to be made as those of any image. Raises ImageFileError.
+    None if levels are needed that the file does not have: then they are to
+    be made as those of any image. Raises ImageFileError.
     """
     texture = open_ktx2(image.read(), image.where)
-    first, count = 0, 1
+    count = 1
+    first = levels_beyond(
+        texture.size, info.max_texture_size, request.max_size, image.where
+    )
     if request.has_levels:
         count = texture.level_count
         if count == 1 < max(texture.size).bit_length():
             return None
-        finest = read.finest(*texture.size) if read else 0
-        first = min(finest, count - 1)
+        if read is not None:
+            first = max(first, min(read.finest(*texture.size), count - 1))
+    if first >= count:
+        return None
     pixels, target = choose_format(
         texture, info.compressed_formats, is_colour=request.is_colour
     )

@@ -4,6 +4,7 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.renderer.sampled_levels import StillPicture
 from moka.renderer.scene_materials import SceneMaterials
+from moka.renderer.texture_settings import TextureSettings
 from moka.renderer.textures import TexturePool
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
@@ -30,7 +31,11 @@ class MaterialPool:
         self.textures.close()
 
     def begin(
-        self, scene: Scene, still: Camera | None, size: tuple[int, int]
+        self,
+        scene: Scene,
+        still: Camera | None,
+        size: tuple[int, int],
+        settings: TextureSettings,
     ) -> None:
         """Start to decode what ``scene`` samples, without waiting for it.
 
@@ -40,10 +45,14 @@ class MaterialPool:
         :meth:`describe` makes up for it if asked for another.
         """
         self._still = StillPicture(scene, still, size) if still else None
-        self._describe(scene)
+        self._describe(scene, settings)
 
     def describe(
-        self, scene: Scene, camera: Camera, size: tuple[int, int]
+        self,
+        scene: Scene,
+        camera: Camera,
+        size: tuple[int, int],
+        settings: TextureSettings,
     ) -> SceneMaterials:
         """The materials of ``scene``, as of its last update.
 
@@ -54,15 +63,20 @@ class MaterialPool:
             scene, camera, size
         ):
             self._still = None
-        return self._describe(scene)
+        return self._describe(scene, settings)
 
-    def _describe(self, scene: Scene) -> SceneMaterials:
-        key = (id(scene), scene.structure_version, self._still)
+    def _describe(
+        self, scene: Scene, settings: TextureSettings
+    ) -> SceneMaterials:
+        key = (id(scene), scene.structure_version, self._still, settings)
         if self._materials is None or self.key != key:
             self._statistics.count("textures_loaded", 0)
             self._statistics.count("textures_reduced", 0)
             self._materials = SceneMaterials(
-                scene.drawables.primitives, self.textures, self._still
+                scene.drawables.primitives,
+                self.textures,
+                self._still,
+                settings,
             )
             self.key = key
             images = {

@@ -32,9 +32,8 @@ from moka.lighting.environment_maps import (
 from moka.material.description import (
     Feature,
     MaterialDescription,
-    texture_slots,
 )
-from moka.material.material import Material
+from moka.material.material import Texture
 from moka.model.mesh import Primitive
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.material_table import MaterialTable
@@ -136,9 +135,9 @@ class PreparedScene:
                 material, has_transforms=permutation.has_transforms
             )
             group = self._bind_group(
-                material,
                 permutation,
                 materials.requests[index],
+                materials.textures[index],
                 place.page,
                 shared,
                 textures,
@@ -178,19 +177,18 @@ class PreparedScene:
 
     def _bind_group(
         self,
-        material: Material,
         permutation: Permutation,
         requests: dict[str, TextureRequest],
+        sampled: dict[str, Texture],
         page: Handle,
         shared: SharedBindings,
         textures: TexturePool,
     ) -> Handle:
-        slots = texture_slots(material)
         bound = [
             TextureBinding(
                 f"{slot}_texture",
                 textures.handle(request),
-                slots[slot].sampler,
+                sampled[slot].sampler,
             )
             for slot, request in requests.items()
         ]

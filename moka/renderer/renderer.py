@@ -145,7 +145,9 @@ class Renderer:
         cannot be had.
         """
         scene.update()
-        materials = self._materials.describe(scene, camera, self.size)
+        materials = self._materials.describe(
+            scene, camera, self.size, self.settings.textures
+        )
         self._update_pose_texture(scene, materials)
         width, height = self.size
         is_reversed = self.device.info.clip_control
@@ -215,7 +217,9 @@ class Renderer:
         from moka.renderer.surface_values import SurfaceValues, groups_of
 
         scene.update()
-        materials = self._materials.describe(scene, camera, self.size)
+        materials = self._materials.describe(
+            scene, camera, self.size, self.settings.textures
+        )
         self._update_pose_texture(scene, materials)
         width, height = self.size
         is_reversed = self.device.info.clip_control

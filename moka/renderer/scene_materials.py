@@ -17,10 +17,12 @@ from moka.material.description import (
     moves,
     texture_slots,
 )
-from moka.material.material import Material, Texture
+from moka.material.material import AlphaMode, Material, Texture
 from moka.model.mesh import Primitive
 from moka.renderer.sampled_levels import SampledLevels, StillPicture
+from moka.renderer.texture_settings import TextureSettings
 from moka.renderer.textures import (
+    Coverage,
     Graft,
     TexturePool,
     TextureRequest,
@@ -30,6 +32,7 @@ from moka.renderer.textures import (
 __all__ = ["SceneMaterials"]
 
 _DEFAULT_MATERIAL = Material(name="glTF default")
+_DEFAULT_SETTINGS = TextureSettings()
 
 
 # Which channel of which slot glTF 2.0, 3.9.2 and 3.9.3, has each value in.
@@ -46,6 +49,7 @@ class SceneMaterials:
     Made first, so that images decode while everything else goes on. With
     ``picture`` only what it shows is there: ``drawn`` holds the positions
     among ``primitives`` of those that the other lists are about.
+    ``requests`` and ``textures`` are what is bound of each, by slot.
     """
 
     def __init__(
@@ -53,6 +57,7 @@ class SceneMaterials:
         primitives: Sequence[Primitive],
         textures: TexturePool,
         picture: StillPicture | None = None,
+        settings: TextureSettings = _DEFAULT_SETTINGS,
     ) -> None:
         self.drawn: Sequence[int] = (
             range(len(primitives)) if picture is None else picture.drawn
@@ -60,6 +65,7 @@ class SceneMaterials:
         self.materials: list[Material] = []
         self.descriptions: list[MaterialDescription] = []
         self.requests: list[dict[str, TextureRequest]] = []
+        self.textures: list[dict[str, Texture]] = []
         images: dict[TextureRequest, list[EncodedImage]] = {}
         reads: dict[TextureRequest, list[tuple[int, Texture]]] = {}
         moving: set[TextureRequest] = set()
@@ -90,23 +96,26 @@ class SceneMaterials:
                 )
                 known[key] = (
                     description,
-                    _requests(material, description, picture, images),
+                    _requests(material, description, picture, settings, images),
                 )
             description, requests = known[key]
             self.materials.append(material)
             self.descriptions.append(description)
             self.requests.append(requests)
             slots = texture_slots(material)
+            sampled = {slot: settings.sampled(slots[slot]) for slot in requests}
+            self.textures.append(sampled)
             for slot, request in requests.items():
-                reads.setdefault(request, []).append((index, slots[slot]))
+                reads.setdefault(request, []).append((index, sampled[slot]))
                 if moves(material, slot):
                     moving.add(request)
-        for request, given in images.items():
-            levels = None
-            # Coordinates that animations move are not those of the file.
-            if picture is not None and request not in moving:
-                levels = SampledLevels(picture, reads[request])
-            textures.begin(request, given, levels)
+        # Coordinates that animations move are not those of the file.
+        levels = {
+            request: SampledLevels(picture, read)
+            for request, read in reads.items()
+            if picture is not None and request not in moving
+        }
+        textures.begin(images, levels)
         # By identity: embedded images need not be hashed to be left out.
         self.sampled = {id(each) for given in images.values() for each in given}
 
@@ -170,6 +179,7 @@ def _requests(
     material: Material,
     description: MaterialDescription,
     picture: StillPicture | None,
+    settings: TextureSettings,
     images: dict[TextureRequest, list[EncodedImage]],
 ) -> dict[str, TextureRequest]:
     """The textures of a material by slot; their images join ``images``."""
@@ -193,8 +203,27 @@ def _requests(
             given.append(image)
             graft = Graft(image.identity, of, into)
         request = texture_request(
-            use.slot, texture, graft, picture.number if picture else 0
+            use.slot,
+            texture,
+            graft=graft,
+            coverage=_coverage(material, use.slot),
+            max_size=settings.max_size,
+            picture=picture.number if picture else 0,
         )
         images.setdefault(request, given)
         requests[use.slot] = request
     return requests
+
+
+def _coverage(material: Material, slot: str) -> Coverage | None:
+    """What the alpha of a texture in ``slot`` says of the surface, if it does.
+
+    The texture's part of what the shader compares with the cutoff.
+    """
+    if slot != "base_colour" or material.alpha_mode is AlphaMode.OPAQUE:
+        return None
+    factor = material.base_colour_factor[3]
+    if material.alpha_mode is AlphaMode.BLEND or factor <= 0:
+        return Coverage()
+    cutoff = material.alpha_cutoff / factor
+    return Coverage(cutoff if 0 < cutoff <= 1 else None)

@@ -1,8 +1,13 @@
 """How a picture is made: the choices of the command line as one value."""
 
+from typing import TYPE_CHECKING
+
 from msgspec import Struct
 
 from moka.core.errors import OptionError
+
+if TYPE_CHECKING:
+    from moka.renderer.texture_settings import TextureSettings
 
 __all__ = [
     "BRDFS",
@@ -29,6 +34,10 @@ DEFAULT_IBL_SAMPLES = 16
 MOST_IBL_SAMPLES = 256
 MOST_REFERENCE_SAMPLES = 1 << 24
 
+# As far as any driver goes.
+MOST_ANISOTROPY = 16
+MOST_TEXTURE_SIZE = 1 << 16
+
 
 class RenderSettings(Struct, frozen=True):
     """Settings of a :class:`moka.Renderer`.
@@ -53,6 +62,10 @@ class RenderSettings(Struct, frozen=True):
     decides) or, tile by tile, its estimated relative standard error is below
     ``max_error``. There ``samples`` does not matter: every frame sees
     another point of each pixel.
+
+    ``anisotropy`` is the most samples that a texture seen at a grazing angle
+    is read with, ``max_texture_size`` how many texels a side of a texture
+    keeps; larger ones are reduced, as they are to what the driver takes.
     """
 
     exposure: float = 0.0
@@ -69,6 +82,8 @@ class RenderSettings(Struct, frozen=True):
     ibl_samples: int = DEFAULT_IBL_SAMPLES
     reference_samples: int | None = None
     max_error: float | None = None
+    anisotropy: int = 1
+    max_texture_size: int | None = None
 
     def __post_init__(self) -> None:
         """Raise OptionError for a value that means nothing."""
@@ -88,6 +103,11 @@ class RenderSettings(Struct, frozen=True):
         _check_count(
             "reference samples", self.sample_budget, MOST_REFERENCE_SAMPLES
         )
+        _check_count("anisotropy", self.anisotropy, MOST_ANISOTROPY)
+        if self.max_texture_size is not None:
+            _check_count(
+                "texture size", self.max_texture_size, MOST_TEXTURE_SIZE
+            )
         if self.max_error is not None and not 0 < self.max_error < 1:
             raise OptionError(
                 f"maximum error: {self.max_error} is not between 0 and 1"
@@ -100,6 +120,13 @@ class RenderSettings(Struct, frozen=True):
             raise OptionError(
                 f"exposure: {self.exposure} EV is not between -64 and 64"
             )
+
+    @property
+    def textures(self) -> "TextureSettings":
+        """The part that is about textures."""
+        from moka.renderer.texture_settings import TextureSettings
+
+        return TextureSettings(self.anisotropy, self.max_texture_size)
 
     @property
     def sample_budget(self) -> int:

@@ -7,7 +7,7 @@ the render thread only copies.
 
 import os
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
@@ -27,8 +27,15 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.material.material import Texture
 from moka.renderer.sampled_levels import SampledLevels
+from moka.renderer.texture_settings import levels_beyond
 
-__all__ = ["Graft", "TexturePool", "TextureRequest", "texture_request"]
+__all__ = [
+    "Coverage",
+    "Graft",
+    "TexturePool",
+    "TextureRequest",
+    "texture_request",
+]
 
 _DATA_FORMATS = {
     ("u1", 1): PixelFormat.R8,
@@ -63,29 +70,41 @@ class Graft(Struct, frozen=True):
     into: int
 
 
+class Coverage(Struct, frozen=True):
+    """That the alpha of a texture is how much of the surface is there.
+
+    With ``cutoff`` it is there where alpha reaches it.
+    """
+
+    cutoff: float | None = None
+
+
 class TextureRequest(Struct, frozen=True):
     """An image and how the GPU is to hold it.
 
-    ``picture`` is the number of the still picture that it is for, 0 for any.
+    Without ``coverage`` the alpha is not part of a colour. ``max_size`` is
+    the most texels along a side, ``picture`` the number of the still picture
+    that it is for, 0 for any.
     """
 
     identity: str
     is_colour: bool
     has_levels: bool
     graft: Graft | None = None
+    coverage: Coverage | None = None
+    max_size: int | None = None
     picture: int = 0
 
 
 def texture_request(
-    slot: str, texture: Texture, graft: Graft | None = None, picture: int = 0
+    slot: str, texture: Texture, **choices: Any
 ) -> TextureRequest:
-    """The request for a texture of a material."""
+    """The request for a texture of a material; ``choices`` are its fields."""
     return TextureRequest(
         texture.image.identity,
         slot in COLOUR_SLOTS,
         texture.sampler.mipmap is not MipmapMode.NONE,
-        graft,
-        picture,
+        **choices,
     )
 
 
@@ -100,39 +119,41 @@ class TexturePool:
             max_workers=max(2, os.cpu_count() or 1),
             thread_name_prefix="moka-decode",
         )
-        self._decoders: dict[str, _Decoder] = {}
         self._pending: dict[TextureRequest, Future[Handle]] = {}
 
     def begin(
         self,
-        request: TextureRequest,
-        images: Sequence[EncodedImage],
-        levels: SampledLevels | None = None,
+        wanted: Mapping[TextureRequest, Sequence[EncodedImage]],
+        levels: Mapping[TextureRequest, SampledLevels] | None = None,
     ) -> None:
-        """Begin to decode a texture; :meth:`handle` waits for it.
+        """Begin to decode textures; :meth:`handle` waits for one.
 
-        ``images`` are those that the request names. ``levels`` tells which
-        will be read; by default any may be.
+        ``wanted`` has the images that each request names. ``levels`` tells
+        which will be read; any may be of what is not there.
         """
-        if request in self._pending:
-            return
-        decoders = []
-        for image in images:
-            if image.identity not in self._decoders:
-                self._decoders[image.identity] = _Decoder(image)
-                self._statistics.count("textures_loaded")
-            decoders.append(self._decoders[image.identity])
-        self._pending[request] = self._workers.submit(
-            self._make, request, decoders, levels
-        )
+        decoders = {
+            image.identity: _Decoder(image)
+            for request, images in wanted.items()
+            if request not in self._pending
+            for image in images
+        }
+        self._statistics.count("textures_loaded", len(decoders))
+        jobs = [
+            (request, [decoders[image.identity] for image in images])
+            for request, images in wanted.items()
+            if request not in self._pending
+        ]
+        for _, needed in jobs:
+            for decoder in needed:
+                decoder.uses += 1
+        for request, needed in jobs:
+            self._pending[request] = self._workers.submit(
+                self._make, request, needed, (levels or {}).get(request)
+            )
 
     def handle(self, request: TextureRequest) -> Handle:
         """The texture of a request; raises ImageFileError for a bad image."""
-        handle = self._pending[request].result()
-        self._decoders.pop(request.identity, None)
-        if request.graft is not None:
-            self._decoders.pop(request.graft.identity, None)
-        return handle
+        return self._pending[request].result()
 
     def close(self) -> None:
         """Stop the workers; textures live as long as their device."""
@@ -144,9 +165,6 @@ class TexturePool:
         decoders: "list[_Decoder]",
         read: SampledLevels | None,
     ) -> Handle:
-        from moka.core.decode import with_alpha
-        from moka.core.mip_levels import reduce_levels
-
         if (
             len(decoders) == 1
             and image_media_type(decoders[0].image) == "image/ktx2"
@@ -161,30 +179,7 @@ class TexturePool:
                 return self._device.create_texture(*texture)
 
         with self._statistics.stage("decode"):
-            texels, *others = (decoder.texels() for decoder in decoders)
-            texels = _arrange(texels, is_colour=request.is_colour)
-            if request.graft is not None:
-                texels = _grafted(texels, others[0], request.graft)
-            pixels = (
-                _COLOUR_FORMATS[texels.shape[2]]
-                if request.is_colour
-                else _DATA_FORMATS[texels.dtype.str[1:], texels.shape[2]]
-            )
-            opaque = pixels in _PADDED
-            if opaque:
-                pixels = _PADDED[pixels]
-                texels = with_alpha(texels)
-            levels = [texels]
-            if request.has_levels:
-                height, width = texels.shape[:2]
-                finest = read.finest(width, height) if read else 0
-                self._statistics.count("textures_reduced", int(finest > 0))
-                levels = reduce_levels(
-                    texels,
-                    srgb=request.is_colour,
-                    opaque=opaque,
-                    finest=finest,
-                )
+            levels, pixels = self._levels(request, decoders, read)
         height, width = levels[0].shape[:2]
         return self._device.create_texture(
             TextureDescriptor(
@@ -197,12 +192,68 @@ class TexturePool:
             levels,
         )
 
+    def _levels(
+        self,
+        request: TextureRequest,
+        decoders: "list[_Decoder]",
+        read: SampledLevels | None,
+    ) -> tuple[list[NDArray[Any]], PixelFormat]:
+        from moka.core.decode import with_alpha
+        from moka.core.mip_levels import reduce_levels
+
+        texels, *others = (decoder.texels() for decoder in decoders)
+        height, width = texels.shape[:2]
+        texels = _arrange(texels, is_colour=request.is_colour)
+        if request.graft is not None:
+            texels = _grafted(texels, others[0], request.graft)
+        pixels = (
+            _COLOUR_FORMATS[texels.shape[2]]
+            if request.is_colour
+            else _DATA_FORMATS[texels.dtype.str[1:], texels.shape[2]]
+        )
+        opaque = pixels in _PADDED
+        if opaque:
+            pixels = _PADDED[pixels]
+            texels = with_alpha(texels)
+        finest = levels_beyond(
+            (width, height),
+            self._device.info.max_texture_size,
+            request.max_size,
+            decoders[0].image.where,
+        )
+        if request.has_levels and read is not None:
+            seen = read.finest(width, height)
+            self._statistics.count("textures_reduced", int(seen > finest))
+            finest = max(finest, seen)
+        if not request.has_levels and not finest:
+            return [texels], pixels
+        if request.coverage is not None and not opaque:
+            from moka.core.alpha_levels import reduce_alpha_levels
+
+            levels = reduce_alpha_levels(
+                texels, cutoff=request.coverage.cutoff, finest=finest
+            )
+        else:
+            # What nobody reads may be white: alpha that is no coverage of
+            # colours that carry nothing.
+            levels = reduce_levels(
+                texels,
+                srgb=request.is_colour,
+                opaque=opaque or (request.is_colour and not request.graft),
+                finest=finest,
+            )
+        return levels if request.has_levels else levels[:1], pixels
+
 
 class _Decoder:
-    """Decodes an image once, in whichever worker asks first."""
+    """Decodes an image once, in whichever worker asks first.
+
+    Forgets it when all ``uses`` have asked.
+    """
 
     def __init__(self, image: EncodedImage) -> None:
         self.image = image
+        self.uses = 0
         self._lock = threading.Lock()
         self._texels: NDArray[Any] | None = None
 
@@ -211,9 +262,12 @@ class _Decoder:
         from moka.core.decode import decode_image
 
         with self._lock:
-            if self._texels is None:
-                self._texels = decode_image(self.image)
-            return self._texels
+            texels = self._texels
+            if texels is None:
+                texels = decode_image(self.image)
+            self.uses -= 1
+            self._texels = texels if self.uses else None
+            return texels
 
 
 def _grafted(

@@ -50,6 +50,8 @@ def read_back(arguments: list[str]) -> RenderRequest:
                 irradiance="cube",
                 ibl="filtered",
                 ibl_samples=8,
+                anisotropy=8,
+                max_texture_size=2048,
             )
         },
         {

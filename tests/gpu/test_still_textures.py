@@ -17,6 +17,7 @@ from moka.material.material import Material, Texture
 from moka.model import model_of, quad, sphere
 from moka.renderer.material_pool import MaterialPool
 from moka.renderer.renderer import Renderer
+from moka.renderer.texture_settings import TextureSettings
 from tests.support.pictures import encoded, placed_at, scene_of, square_camera
 
 pytestmark = pytest.mark.gpu
@@ -105,7 +106,7 @@ def test_another_picture_gets_what_the_first_did_without(
         statistics = Statistics()
         materials = MaterialPool(egl_device, statistics)
         scene.update()
-        materials.begin(scene, first, (64, 64))
+        materials.begin(scene, first, (64, 64), TextureSettings())
         renderer = Renderer(
             egl_device, (64, 64), statistics=statistics, materials=materials
         )

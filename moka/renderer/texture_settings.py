@@ -1,0 +1,66 @@
+"""How textures are sampled and held, apart from what files say of them."""
+
+import logging
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from moka.commands.descriptors import Filter, MipmapMode
+from moka.material.material import Texture
+
+__all__ = ["TextureSettings", "levels_beyond"]
+
+_LOGGER = logging.getLogger(__name__)
+
+
+class TextureSettings(Struct, frozen=True):
+    """Choices of :class:`moka.renderer.settings.RenderSettings`.
+
+    ``anisotropy`` is the most samples along the longer side of a pixel's
+    footprint, ``max_size`` how many texels a side may have, None for what
+    the driver takes.
+    """
+
+    anisotropy: int = 1
+    max_size: int | None = None
+
+    def sampled(self, texture: Texture) -> Texture:
+        """The texture with the sampler that it is read with.
+
+        Samplers that ask for the nearest texel, or for no mip levels, are
+        meant to look so and stay as they are.
+        """
+        sampler = texture.sampler
+        if (
+            self.anisotropy <= sampler.anisotropy
+            or sampler.mipmap is not MipmapMode.LINEAR
+            or Filter.NEAREST in (sampler.minify, sampler.magnify)
+        ):
+            return texture
+        sampler = replace(sampler, anisotropy=float(self.anisotropy))
+        return replace(texture, sampler=sampler)
+
+
+def levels_beyond(
+    size: tuple[int, int], most: int, wanted: int | None, where: str
+) -> int:
+    """How many levels of an image are larger than they may be.
+
+    ``most`` is what the driver takes along a side, ``wanted`` what the user
+    asked for; a line in the log tells where images are reduced.
+    """
+    limit = min(most, wanted or most)
+    level = 0
+    while max(size) >> level > limit:
+        level += 1
+    if level:
+        _LOGGER.log(
+            logging.INFO if limit == wanted else logging.WARNING,
+            "%s: %d x %d texels are reduced to %d x %d; %s %d along a side",
+            where,
+            *size,
+            *(max(1, side >> level) for side in size),
+            "asked for are" if limit == wanted else "the driver takes",
+            limit,
+        )
+    return level
