@@ -2,17 +2,19 @@
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from moka.commands.descriptors import Topology
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
 from moka.core.image_header import pixel_size
 from moka.material.material import Material
-from moka.model.animation import Animation
 from moka.model.cameras import CameraDescription, Perspective
 from moka.model.lights import PunctualLight
 from moka.model.model import Model
+
+if TYPE_CHECKING:
+    from moka.model.animation import Animation
 
 __all__ = ["describe", "format_description"]
 
@@ -255,7 +257,7 @@ def _light(light: PunctualLight) -> dict[str, Any]:
     }
 
 
-def _animation(animation: Animation) -> dict[str, Any]:
+def _animation(animation: "Animation") -> dict[str, Any]:
     times = {id(channel.times) for channel in animation.channels}
     return {
         "name": animation.name,

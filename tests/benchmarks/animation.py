@@ -8,7 +8,8 @@ set of times for all and once with a set for each. ``sample`` is the values
 of all channels at one time, ``pose`` those in their columns, ``frame`` what
 Scene.animate and Scene.update take together: with the matrices of all nodes
 made and passed down the tree. ``still`` is a frame in which time stands.
-Best and median of the runs, in milliseconds.
+Of models that are named, so many copies play at different times: ``10`` and
+``100``. Best and median of the runs, in milliseconds.
 """
 
 import argparse
@@ -62,7 +63,25 @@ def timed(work: Callable[[int], object], runs: int = 30) -> tuple[float, float]:
     return min(taken), median(taken)
 
 
-def report(name: str, source: ModelSource) -> None:
+def crowd(source: ModelSource, count: int) -> tuple[float, float]:
+    """Frames of so many copies that play the longest animation."""
+    scene, model = Scene(), load_model(source)
+    lengths = [animation.duration for animation in model.animations]
+    number = lengths.index(max(lengths))
+    for index in range(count):
+        scene.add(model).animations.play(number, start=0.013 * index)
+
+    def frame(_: int) -> None:
+        scene.animate(1 / 60)
+        scene.update()
+
+    frame(0)
+    return timed(frame)
+
+
+def report(
+    name: str, source: ModelSource, copies: tuple[int, ...] = ()
+) -> None:
     """Print a line for each thing that is timed."""
     results = {"load": timed(lambda _: load_model(source), 5)}
     scene = Scene()
@@ -87,6 +106,8 @@ def report(name: str, source: ModelSource) -> None:
     results["frame"] = timed(frame)
     model.animations.pause()
     results["still"] = timed(frame)
+    for count in copies:
+        results[str(count)] = crowd(source, count)
     print(f"{name}: {len(animation.channels)} channels")
     for what, (best, usual) in results.items():
         print(f"  {what:<7} {best:9.3f}  {usual:9.3f}")
@@ -102,7 +123,7 @@ def main() -> None:
     report("one set of times", made_file(count, shared=True))
     report("a set for each", made_file(count, shared=False))
     for path in arguments.models:
-        report(path.name, path)
+        report(path.name, path, (10, 100))
 
 
 if __name__ == "__main__":
