@@ -40,6 +40,10 @@ class FullscreenPasses:
         """How many programs are loaded."""
         return len(self._programs)
 
+    def reload(self) -> int:
+        """:meth:`ProgramCache.reload` of the passes' programs."""
+        return self._programs.reload()
+
     def program(
         self,
         fragment: str,

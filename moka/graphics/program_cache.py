@@ -6,11 +6,24 @@ not by a hash of it: two descriptions can never share a program by accident.
 
 from collections.abc import Callable, Hashable
 
+from msgspec import Struct
+
 from moka.commands.descriptors import ProgramDescriptor
 from moka.commands.handles import Handle
+from moka.core.errors import ShaderError
 from moka.graphics.device import GraphicsDevice
 
 __all__ = ["ProgramCache"]
+
+Describe = Callable[[], ProgramDescriptor]
+
+
+class _Loaded(Struct):
+    """A program, its sources, and who knows what they are now."""
+
+    handle: Handle
+    descriptor: ProgramDescriptor
+    describe: Describe
 
 
 class ProgramCache:
@@ -18,22 +31,47 @@ class ProgramCache:
 
     def __init__(self, device: GraphicsDevice) -> None:
         self._device = device
-        self._programs: dict[Hashable, Handle] = {}
+        self._programs: dict[Hashable, _Loaded] = {}
 
     def __len__(self) -> int:
         return len(self._programs)
 
-    def get(
-        self, key: Hashable, describe: Callable[[], ProgramDescriptor]
-    ) -> Handle:
+    def get(self, key: Hashable, describe: Describe) -> Handle:
         """The program for ``key``; ``describe`` is asked for a new one."""
-        handle = self._programs.get(key)
-        if handle is None:
-            handle = self._device.create_program(describe())
-            self._programs[key] = handle
-        return handle
+        loaded = self._programs.get(key)
+        if loaded is None:
+            descriptor = describe()
+            loaded = _Loaded(
+                self._device.create_program(descriptor), descriptor, describe
+            )
+            self._programs[key] = loaded
+        return loaded.handle
+
+    def reload(self) -> int:
+        """Compile what has other sources now; returns how many that are.
+
+        All of them are replaced, and have other handles then, or, where one
+        does not compile, none: raises ShaderError, and draws go on as before.
+        Sources are remembered until
+        :func:`moka.graphics.shader_source.forget_shaders`.
+        """
+        fresh: dict[Hashable, _Loaded] = {}
+        try:
+            for key, loaded in self._programs.items():
+                descriptor = loaded.describe()
+                if descriptor != loaded.descriptor:
+                    handle = self._device.create_program(descriptor, wait=True)
+                    fresh[key] = _Loaded(handle, descriptor, loaded.describe)
+        except ShaderError:
+            self._device.destroy(*(new.handle for new in fresh.values()))
+            raise
+        self._device.destroy(*(self._programs[key].handle for key in fresh))
+        self._programs.update(fresh)
+        return len(fresh)
 
     def clear(self) -> None:
         """Destroy all of them."""
-        self._device.destroy(*self._programs.values())
+        self._device.destroy(
+            *(loaded.handle for loaded in self._programs.values())
+        )
         self._programs.clear()

@@ -20,7 +20,7 @@ from moka.commands.descriptors import ShaderText
 from moka.core.errors import ShaderError
 from moka.core.resources import shader_folder
 
-__all__ = ["explain_log", "load_shader", "preprocess_shader"]
+__all__ = ["explain_log", "forget_shaders", "load_shader", "preprocess_shader"]
 
 LINES_PER_FILE = 10_000
 
@@ -199,6 +199,11 @@ class _Reader:
         if target in opened:
             circle = " -> ".join((*opened[opened.index(target) :], target))
             raise ShaderError(f"{here}: files include each other: {circle}")
+
+
+def forget_shaders() -> None:
+    """Read every file anew when it is asked for the next time."""
+    _read_lines.cache_clear()
 
 
 @cache

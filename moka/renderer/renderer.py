@@ -30,6 +30,7 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.graphics.program_cache import ProgramCache
+from moka.graphics.shader_source import forget_shaders
 from moka.lighting.disk_cache import DiskCache
 from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
@@ -98,7 +99,7 @@ class Renderer:
         self.settings = settings or RenderSettings()
         self.statistics = statistics or Statistics()
         self._to_window = to_window
-        passes = FullscreenPasses(device)
+        self._passes = passes = FullscreenPasses(device)
         self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)
         self._sky_map = SkyMap(device)
@@ -124,6 +125,21 @@ class Renderer:
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
         self._materials.close()
+
+    def reload_shaders(self) -> int:
+        """Compile the shaders whose files have changed; says how many.
+
+        Raises ShaderError where one does not compile; the picture then is
+        made as before.
+        """
+        forget_shaders()
+        try:
+            return self._programs.reload() + self._passes.reload()
+        finally:
+            # What is prepared names programs by handles that may be gone.
+            self._prepared_key = None
+            if self._values is not None:
+                self._values.forget()
 
     @property
     def has_lighting_to_keep(self) -> bool:

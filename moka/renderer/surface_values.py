@@ -189,6 +189,10 @@ class SurfaceValues:
         )
         return targets
 
+    def forget(self) -> None:
+        """Prepare anew what is drawn next; programs may be others."""
+        self._prepared_key = None
+
     def _prepare(
         self,
         scene: Scene,
