@@ -33,7 +33,7 @@ from moka.commands.commands import Readback
 from moka.commands.sort_key import SortKey
 from moka.core.errors import MokaError
 from moka.core.image import Image
-from moka.core.resources import asset_folder
+from moka.core.resources import asset_folder, shader_folder
 from moka.lighting.environment import Environment, load_environment
 from moka.model import Model, load_model
 from moka.renderer.settings import RenderSettings
@@ -41,6 +41,7 @@ from moka.scene.camera import Camera
 from moka.scene.camera_choice import Orbit, choose_camera, parse_camera
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
+from moka.ui.file_watcher import FileWatcher
 from moka.ui.interface import Interface
 from moka.ui.orbit_controls import OrbitControls
 from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
@@ -103,6 +104,8 @@ class Viewer(App):
         ]
         self.interface: Interface
         self._work = BackgroundWork(self.request_redraw)
+        self._watcher = FileWatcher(self._files_changed)
+        self._changed: set[Path] = set()
         self._reads: list[tuple[list[Readback], Callable[[], None]]] = []
         self._wants_picture: Path | None = None
         self._settling = 0
@@ -149,6 +152,7 @@ class Viewer(App):
             self._work.poll()
         except MokaError as error:
             self.error = str(error)
+        self._reload()
         self._take_reads()
         self._fly(time.delta)
         if self._settling or self._reads or self._work.doing:
@@ -175,6 +179,7 @@ class Viewer(App):
 
     def close(self) -> None:
         """End the work in the background."""
+        self._watcher.close()
         self._work.close()
         self.interface.close()
 
@@ -421,6 +426,7 @@ class Viewer(App):
         self.model_source = source
         self.selection = None
         self.error = None
+        self._watch()
         self._camera_number = -1
         if self.window is not None:
             self.window.set_title(f"{_name(source)} - moka")
@@ -453,7 +459,40 @@ class Viewer(App):
         self.scene.environment = environment
         self.environment_source = source
         self.error = None
+        self._watch()
         self.request_redraw()
+
+    # Files that change while they are shown.
+
+    def _watch(self) -> None:
+        """Watch the shaders, and the files that are shown."""
+        shown = [
+            Path(source)
+            for source in (self.model_source, self.environment_source)
+            if isinstance(source, str | os.PathLike) and Path(source).exists()
+        ]
+        self._watcher.watch([shader_folder(), *shown])
+
+    def _files_changed(self, paths: frozenset[Path]) -> None:
+        """Note it; called on the thread of the watcher."""
+        self._changed |= paths
+        self.request_redraw()
+
+    def _reload(self) -> None:
+        """Read what has changed again; what is broken stays as it was."""
+        changed, self._changed = self._changed, set()
+        if not changed:
+            return
+        if any(path.is_relative_to(shader_folder()) for path in changed):
+            try:
+                self.renderer.reload_shaders()
+                self.error = None
+            except MokaError as error:
+                self.error = str(error)
+        if _is_among(self.model_source, changed):
+            self.open_model(self.model_source, keep_view=True)
+        if _is_among(self.environment_source, changed):
+            self.open_environment(self.environment_source)
 
     def _remove_model(self) -> None:
         if self.model is not None:
@@ -596,6 +635,13 @@ def _name(source: Any) -> str:
     if isinstance(source, str | os.PathLike):
         return Path(source).name
     return "the demo scene" if source is None else "a model"
+
+
+def _is_among(source: Any, changed: set[Path]) -> bool:
+    return (
+        isinstance(source, str | os.PathLike)
+        and Path(source).resolve() in changed
+    )
 
 
 def _unused(stem: str, suffix: str) -> Path:

@@ -1,5 +1,7 @@
 """The viewer in a real window, with a person at mouse and keyboard."""
 
+import shutil
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -10,6 +12,8 @@ from PIL import Image as PillowImage
 import moka
 from moka.app.events import DropEvent
 from moka.app.render_session import RenderRequest
+from moka.core import resources
+from moka.graphics.shader_source import forget_shaders
 from moka.material.material import Material
 from moka.model import cube, model_of, save_model
 from moka.ui.viewer import Viewer
@@ -169,8 +173,6 @@ def test_what_cannot_be_opened_is_told_and_changes_nothing(
 
 def test_a_still_window_draws_nothing(watch: Watch) -> None:
     def story(person: Person, viewer: Viewer) -> None:
-        import time
-
         drawn = []
         draw = viewer.draw
         viewer.draw = lambda *given: (drawn.append(1), draw(*given))[1]  # type: ignore[method-assign]
@@ -203,3 +205,69 @@ def test_a_click_selects_and_two_make_a_pivot(watch: Watch) -> None:
         )
 
     watch(story)
+
+
+def test_a_model_that_changes_is_read_again_from_where_one_stands(
+    watch: Watch, model: Path
+) -> None:
+    pytest.importorskip("watchfiles")
+
+    def story(person: Person, viewer: Viewer) -> None:
+        box = (0, 0, *SIZE)
+        person.wait("a picture", lambda: is_red(person.look(box)).any())
+        viewer.controls.zoom(3, viewer.camera)
+        distance = viewer.controls.distance
+        green = Material(
+            base_colour_factor=(0.05, 1, 0.1, 1), metallic_factor=0.0
+        )
+        changed = model_of([(cube(1.0), green, np.eye(4))])
+
+        def is_green() -> bool:
+            if is_red(person.look(box)).any():
+                save_model(changed, model)  # The watch may be beginning.
+                return False
+            return True
+
+        person.wait("another picture", is_green)
+        assert viewer.controls.distance == distance
+        model.write_bytes(b"half a file")
+        person.wait("an error", lambda: viewer.error is not None)
+        assert viewer.model is not None
+
+    watch(story)
+
+
+def test_shaders_that_change_are_compiled_again(
+    watch: Watch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A broken one is told, and the picture stays."""
+    pytest.importorskip("watchfiles")
+    shaders = tmp_path / "shaders"
+    shutil.copytree(resources.shader_folder(), shaders)
+    monkeypatch.setattr(resources, "_folder", lambda _: shaders)
+    shader = shaders / "surface.frag"
+    text = shader.read_text()
+    end = text.rindex("}")
+
+    def story(person: Person, viewer: Viewer) -> None:
+        box = (0, 0, *SIZE)
+        person.wait("a picture", lambda: is_red(person.look(box)).any())
+
+        def broken() -> bool:
+            shader.write_text(text[:end] + "    nonsense;\n}\n")
+            time.sleep(0.5)
+            return viewer.error is not None
+
+        person.wait("an error", broken)
+        assert viewer.error is not None
+        assert "surface.frag:" in viewer.error
+        assert "nonsense" in viewer.error
+        assert is_red(person.look(box)).any()
+        shader.write_text(text[:end] + "    radiance.rgb = radiance.bgr;\n}\n")
+        person.wait("blue", lambda: not is_red(person.look(box)).any())
+        assert viewer.error is None
+
+    try:
+        watch(story)
+    finally:
+        forget_shaders()
