@@ -45,6 +45,7 @@ def render(
     max_error: float | None = None,
     anisotropy: int = 1,
     max_texture_size: int | None = None,
+    cull_pixels: float = 0.5,
     aov: str | Sequence[str] = (),
     full_textures: bool = False,
     backend: str = "auto",
@@ -81,7 +82,8 @@ def render(
     as the map, or ``half`` of that. ``ibl`` is how the environment lights:
     ``split-sum``; ``filtered``, with ``ibl_samples`` view-dependent samples
     a pixel; ``reference``, which integrates it until ``reference_samples``
-    or an estimated relative standard error of ``max_error``. ``aov`` names
+    or an estimated relative standard error of ``max_error``. Anything but
+    that leaves out what looks smaller than ``cull_pixels``. ``aov`` names
     what else is wanted of the nearest surface of each pixel, any of
     ``depth``, ``normal``, ``albedo``, ``roughness``, ``metallic``,
     ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
@@ -126,6 +128,7 @@ def render(
         max_error=max_error,
         anisotropy=anisotropy,
         max_texture_size=max_texture_size,
+        cull_pixels=cull_pixels,
         aov=aov,
         full_textures=full_textures,
         backend=backend,

@@ -173,6 +173,14 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-error 16384 at most)",
     )
     add(
+        "--cull-pixels",
+        metavar="N",
+        type=number,
+        default=0.5,
+        help="leave out what looks smaller than N pixels; 0 draws everything "
+        "(default: 0.5)",
+    )
+    add(
         "--max-error",
         metavar="E",
         type=number,
@@ -227,6 +235,7 @@ def picture_request(
         max_error=arguments.max_error,
         anisotropy=arguments.anisotropy,
         max_texture_size=arguments.max_texture_size,
+        cull_pixels=arguments.cull_pixels,
         float_output=float_output,
     )
     _check_lighting(arguments, settings.ibl)

@@ -180,7 +180,7 @@ class Renderer:
             positional=bool(lights["positional"].any()),
             logarithmic_depth=view.depth_range is not None,
         )
-        visible = np.flatnonzero(scene.visible(camera, width / height))
+        visible = self._visible(scene, camera)
         if self._accumulates:
             self._progressive.begin(
                 self._picture_key(scene, view, lights),
@@ -257,7 +257,7 @@ class Renderer:
             scene,
             materials,
             view,
-            np.flatnonzero(scene.visible(camera, width / height)),
+            self._visible(scene, camera),
             groups_of(names),
             self.size,
             commands,
@@ -417,6 +417,13 @@ class Renderer:
             None if self._poses is None else self._poses.places,
         )
         return self._prepared
+
+    def _visible(self, scene: Scene, camera: Camera) -> NDArray[np.intp]:
+        width, height = self.size
+        pixels = 0.0 if self._accumulates else self.settings.cull_pixels
+        return np.flatnonzero(
+            scene.visible(camera, width / height, pixels / height)
+        )
 
     def _update_targets(self) -> Targets:
         settings = self.settings

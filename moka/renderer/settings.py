@@ -84,6 +84,7 @@ class RenderSettings(Struct, frozen=True):
     max_error: float | None = None
     anisotropy: int = 1
     max_texture_size: int | None = None
+    cull_pixels: float = 0.5
 
     def __post_init__(self) -> None:
         """Raise OptionError for a value that means nothing."""
@@ -115,6 +116,10 @@ class RenderSettings(Struct, frozen=True):
         if not 1 <= self.samples <= 64:
             raise OptionError(
                 f"samples: {self.samples} is not between 1 and 64"
+            )
+        if not 0 <= self.cull_pixels <= 1e6:
+            raise OptionError(
+                f"cull pixels: {self.cull_pixels} is not between 0 and 1e6"
             )
         if not abs(self.exposure) <= 64:
             raise OptionError(

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from moka.core.maths import Array
 
-__all__ = ["boxes_in_frustum", "pack_boxes", "view_depths"]
+__all__ = ["boxes_below", "boxes_in_frustum", "pack_boxes", "view_depths"]
 
 # Rounding of the plane equations, relative to their largest term. A box is
 # only left out if it is outside by more.
@@ -51,6 +51,29 @@ def boxes_in_frustum(planes: ArrayLike, boxes: Array) -> NDArray[np.bool_]:
         # Not so for what is not a number.
         outside = (distance < 0.0).any(axis=0)
     return np.asarray(~outside)
+
+
+def boxes_below(
+    part: float, view_matrix: ArrayLike, projection: ArrayLike, boxes: Array
+) -> NDArray[np.bool_]:
+    """Which boxes (6, N) look smaller than ``part`` of a picture's height.
+
+    ``view_matrix`` and ``projection`` (4, 4) are a camera's. The sphere
+    around a box is what counts, from its nearest side and stretched as it
+    would be in a corner of the picture, so that none looks smaller than it
+    does. Boxes that are not finite, or around the camera, are not.
+    """
+    projection = np.asarray(projection, np.float64)
+    row = np.asarray(view_matrix, np.float64)[2]
+    with np.errstate(over="ignore", invalid="ignore"):
+        radius = np.sqrt((boxes[3:] ** 2).sum(axis=0))
+        if projection[3, 3] != 0:
+            return np.asarray(radius * projection[1, 1] < part)
+        corner = (1 + np.abs(projection[:2, 2])) / np.diag(projection)[:2]
+        stretch = np.sqrt(1 + corner @ corner)
+        nearest = -row[:3] @ boxes[:3] - row[3] - radius
+        size = radius * (projection[1, 1] * stretch)
+        return np.asarray(size < part * nearest)
 
 
 def view_depths(view_matrix: ArrayLike, boxes: Array) -> Array:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError, OptionError
 from moka.core.maths import Array, is_mirrored, transform_bounds, union_bounds
 from moka.material.material import Material
@@ -144,6 +145,7 @@ _COLUMNS = (
     "world_bounds",
     "mirrored",
     "object",
+    "points",
 )
 
 
@@ -203,6 +205,10 @@ class Drawables:
                 strict=True,
             )
         )
+        self.points: NDArray[np.bool_] = np.array(
+            [each.topology is Topology.POINTS for each in self.primitives],
+            np.bool_,
+        )[self.primitive]
         self.total = len(self.row)
         self.world_bounds: Array = np.zeros_like(self.local_bounds)
         self.boxes = pack_boxes(self.world_bounds)

@@ -19,7 +19,7 @@ from moka.model.lights import PunctualLight
 from moka.model.model import Model
 from moka.scene.background import Background, parse_background
 from moka.scene.camera import Camera
-from moka.scene.culling import boxes_in_frustum
+from moka.scene.culling import boxes_below, boxes_in_frustum
 from moka.scene.drawables import Drawables, ModelLayout
 from moka.scene.lights import Light, pack_lights
 from moka.scene.scene_model import SceneModel
@@ -256,14 +256,26 @@ class Scene:
             self.shown &= ~hidden[self.drawables.row]
             self._built = now
 
-    def visible(self, camera: Camera, aspect: float) -> NDArray[np.bool_]:
+    def visible(
+        self, camera: Camera, aspect: float, smallest: float = 0.0
+    ) -> NDArray[np.bool_]:
         """Which draws (D,) a camera may see in a picture of ``aspect``.
 
+        Without those that look smaller than ``smallest``, a part of the
+        picture's height; points, which have a size of their own, never do.
         As of the last :meth:`update`.
         """
         planes = camera.frustum_planes(aspect)
         drawables = self.drawables
         visible = self.shown & boxes_in_frustum(planes, drawables.boxes)
+        if smallest > 0.0:
+            below = boxes_below(
+                smallest,
+                camera.view_matrix,
+                camera.projection_matrix(aspect, reversed_z=True),
+                drawables.boxes,
+            )
+            visible &= ~below | drawables.points
         if drawables.levels is not None:
             visible &= drawables.levels.shown(
                 drawables.world_bounds, camera, aspect

@@ -1,5 +1,6 @@
 """Culling never leaves out what can be seen, whatever the camera."""
 
+import itertools
 import math
 
 import numpy as np
@@ -12,7 +13,12 @@ from moka.core.maths import transform_bounds
 from moka.core.projection import look_at
 from moka.model.cameras import Orthographic, Perspective
 from moka.scene.camera import Camera
-from moka.scene.culling import boxes_in_frustum, pack_boxes, view_depths
+from moka.scene.culling import (
+    boxes_below,
+    boxes_in_frustum,
+    pack_boxes,
+    view_depths,
+)
 from moka.scene.transform import Transform
 
 PROJECTIONS = [
@@ -122,3 +128,58 @@ def test_depth_of_what_is_not_finite_is_zero() -> None:
 def test_depth_fits_a_float32() -> None:
     depth = view_depths(np.eye(4), pack_boxes([cube(0, 0, -1e200)]))
     assert np.isfinite(depth.astype(np.float32)).all()
+
+
+@pytest.mark.parametrize(
+    "projection",
+    [
+        Perspective(1.0, near=0.1),
+        Perspective(2.4, near=0.1),
+        Orthographic(5, 5, 0, 15),
+    ],
+)
+@given(seed=st.integers(0, 2**32), part=st.floats(1e-3, 0.5))
+def test_what_is_below_a_size_nowhere_covers_it(
+    projection: Perspective | Orthographic, seed: int, part: float
+) -> None:
+    """Corners of boxes as they are projected; of the picture 2 x 1."""
+    random = np.random.default_rng(seed)
+    camera = random_camera(random, projection)
+    middle = random.uniform(-15, 15, (200, 1, 3))
+    half = 10.0 ** random.uniform(-3, 0, (200, 1, 3))
+    bounds = middle + half * np.array([[[-1.0]], [[1.0]]]).reshape(1, 2, 1)
+    matrix = camera.projection_matrix(2.0, reversed_z=True)
+    boxes = pack_boxes(bounds)
+    below = boxes_below(part, camera.view_matrix, matrix, boxes)
+    below &= boxes_in_frustum(camera.frustum_planes(2.0), boxes)
+    corners = np.stack(
+        [
+            bounds[:, [x, y, z], [0, 1, 2]]
+            for x, y, z in itertools.product((0, 1), repeat=3)
+        ],
+        axis=1,
+    )
+    corners = np.concatenate([corners, np.ones((200, 8, 1))], axis=2)
+    clip = corners @ (matrix @ camera.view_matrix).T
+    shown = below & (clip[..., 3] > 0).all(axis=1)
+    place = clip[shown][..., :2] / clip[shown][..., 3:]
+    size = np.ptp(place, axis=1) / 2 * (2.0, 1.0)
+    assert (size <= part * (1 + 1e-9)).all()
+
+
+def test_a_size_is_close_to_what_is_seen() -> None:
+    """A sphere's box at 10 m in the middle, in a view 2 m high at 1 m."""
+    camera = Camera(Perspective(math.pi / 2, near=0.1))
+    boxes = pack_boxes([cube(0, 0, -10, 1 / math.sqrt(3))])
+    matrix = camera.projection_matrix(1.0, reversed_z=True)
+    for part, expected in ((0.1, False), (0.2, True)):
+        below = boxes_below(part, camera.view_matrix, matrix, boxes)
+        assert below.tolist() == [expected]
+
+
+def test_what_has_no_size_or_no_end_is_not_small() -> None:
+    camera = Camera()
+    matrix = camera.projection_matrix(1.0, reversed_z=True)
+    boxes = [[[-math.inf] * 3, [math.inf] * 3], [[math.nan] * 3] * 2]
+    below = boxes_below(1.0, camera.view_matrix, matrix, pack_boxes(boxes))
+    assert below.tolist() == [False, False]
