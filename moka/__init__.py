@@ -42,11 +42,13 @@ if TYPE_CHECKING:
     from moka.model.animation import AnimationChannel as AnimationChannel
     from moka.model.animation import AnimationTarget as AnimationTarget
     from moka.model.animation import Interpolation as Interpolation
+    from moka.model.skins import Skin as Skin
     from moka.renderer.renderer import Renderer as Renderer
     from moka.renderer.settings import RenderSettings as RenderSettings
     from moka.scene.animation_player import AnimationPlayer as AnimationPlayer
     from moka.scene.animation_player import Playback as Playback
     from moka.scene.camera import Camera as Camera
+    from moka.scene.morph_weights import MorphWeights as MorphWeights
     from moka.scene.scene import Scene as Scene
     from moka.scene.scene_model import SceneModel as SceneModel
     from moka.scene.transform import Transform as Transform
@@ -73,6 +75,7 @@ __all__ = [
     "Model",
     "ModelError",
     "MokaError",
+    "MorphWeights",
     "OptionError",
     "Playback",
     "RenderSettings",
@@ -80,6 +83,7 @@ __all__ = [
     "Scene",
     "SceneModel",
     "ShaderError",
+    "Skin",
     "Transform",
     "__version__",
     "load_environment",
@@ -112,6 +116,7 @@ _HOMES = {
     "Model": "moka.model",
     "ModelError": "moka.core.errors",
     "MokaError": "moka.core.errors",
+    "MorphWeights": "moka.scene.morph_weights",
     "OptionError": "moka.core.errors",
     "Playback": "moka.scene.animation_player",
     "RenderSettings": "moka.renderer.settings",
@@ -119,6 +124,7 @@ _HOMES = {
     "Scene": "moka.scene.scene",
     "SceneModel": "moka.scene.scene_model",
     "ShaderError": "moka.core.errors",
+    "Skin": "moka.model.skins",
     "Transform": "moka.scene.transform",
     "load_environment": "moka.lighting.environment",
     "load_model": "moka.model",
