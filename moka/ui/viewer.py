@@ -46,9 +46,11 @@ from moka.ui.interface import Interface
 from moka.ui.orbit_controls import OrbitControls
 from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
 from moka.ui.panels.help import draw_help
+from moka.ui.panels.model import ModelPanel
 from moka.ui.panels.panel import Panel
 from moka.ui.panels.picture import PicturePanel
 from moka.ui.panels.scene_tree import SceneTreePanel
+from moka.ui.panels.timeline import draw_timeline, toggle_playing
 from moka.ui.picking import begin_pick, finish_pick
 from moka.ui.selection import draw_box
 
@@ -97,6 +99,7 @@ class Viewer(App):
         self.shows_panels = True
         self.shows_help = False
         self.panels: list[Panel] = [
+            ModelPanel(),
             PicturePanel(),
             EnvironmentPanel(),
             LightingPanel(),
@@ -155,6 +158,8 @@ class Viewer(App):
         self._reload()
         self._take_reads()
         self._fly(time.delta)
+        if self._is_moving():
+            self.request_redraw()
         if self._settling or self._reads or self._work.doing:
             self._settling = max(self._settling - 1, 0)
         if self._settling or self._reads:
@@ -252,7 +257,16 @@ class Viewer(App):
         cameras = self.scene.cameras
         if cameras:
             self._camera_number = (self._camera_number + 1) % len(cameras)
-            self._look_through(cameras[self._camera_number])
+            self.look_through(cameras[self._camera_number])
+
+    def look_through(self, camera: Camera) -> None:
+        """Stand where ``camera`` does, free to go on from there."""
+        bounds = self.scene.bounds()
+        centre = np.zeros(3) if bounds is None else np.mean(bounds, axis=0)
+        distance = float(np.linalg.norm(camera.position - centre)) or 1.0
+        self.camera.projection = camera.projection
+        self.controls.look_from(camera, distance)
+        self._look()
 
     def save_picture(self, path: str | os.PathLike[str]) -> None:
         """Save the next picture, without panels, as .png or .exr."""
@@ -271,6 +285,11 @@ class Viewer(App):
             f"orbit:{math.degrees(controls.yaw):.6g},"
             f"{math.degrees(controls.pitch):.6g},{controls.distance:.6g}"
         )
+        time, animation = 0.0, None
+        if self.model is not None and self.model.model.animations:
+            current = self.model.animations.current
+            if current is not None:
+                time, animation = current.time, current.animation
         return replace(
             self.begun,
             source=self.model_source,
@@ -282,6 +301,9 @@ class Viewer(App):
             camera=orbit if is_orbit else self.camera,
             size=self.size,
             settings=self.settings,
+            time=time,
+            animation=animation,
+            variant=None if self.model is None else self.model.variant,
         )
 
     def command(self) -> str:
@@ -301,6 +323,8 @@ class Viewer(App):
                 self.window.fullscreen = not self.window.fullscreen
             case Key.F12:
                 self.save_picture(_unused("moka", ".png"))
+            case Key.SPACE:
+                toggle_playing(self)
             case Key.TAB | Key.H:
                 self.shows_panels = not self.shows_panels
             case Key.C if is_control and self.window is not None:
@@ -374,15 +398,6 @@ class Viewer(App):
         self.controls.frame(bounds, self.camera, width / height)
         self._look()
 
-    def _look_through(self, camera: Camera) -> None:
-        """Stand where ``camera`` does, free to go on from there."""
-        bounds = self.scene.bounds()
-        centre = np.zeros(3) if bounds is None else np.mean(bounds, axis=0)
-        distance = float(np.linalg.norm(camera.position - centre)) or 1.0
-        self.camera.projection = camera.projection
-        self.controls.look_from(camera, distance)
-        self._look()
-
     def _pointer(self) -> tuple[float, float]:
         """Where it is, from the middle in halves of the window's height."""
         x, y = self.input.mouse.position
@@ -423,6 +438,11 @@ class Viewer(App):
             scene=begun.scene if is_first else None,
             variant=begun.variant if is_first else None,
         )
+        if self.model.model.animations:
+            if is_first and (begun.time or begun.animation is not None):
+                self.model.animations.pose(begun.animation or 0, begun.time)
+            else:
+                self.model.animations.play()
         self.model_source = source
         self.selection = None
         self.error = None
@@ -443,7 +463,7 @@ class Viewer(App):
             return
         if not isinstance(choice, Camera):
             choice = choose_camera(self.scene, choice, width / height)
-        self._look_through(choice)
+        self.look_through(choice)
 
     def _orbit(self, orbit: Orbit) -> None:
         self.controls.yaw = orbit.yaw
@@ -477,6 +497,17 @@ class Viewer(App):
         """Note it; called on the thread of the watcher."""
         self._changed |= paths
         self.request_redraw()
+
+    def _is_moving(self) -> bool:
+        """Whether an animation plays."""
+        if self.model is None or not self.model.model.animations:
+            return False
+        current = self.model.animations.current
+        return (
+            current is not None
+            and current.speed != 0.0
+            and self.model.animations.is_playing
+        )
 
     def _reload(self) -> None:
         """Read what has changed again; what is broken stays as it was."""
@@ -585,6 +616,8 @@ class Viewer(App):
                 draw_box(imgui, box, self.camera, area)
         if self.shows_panels:
             self._draw_column(imgui, size)
+            area = (size[0] - self._column_width(), size[1])
+            draw_timeline(imgui, self, area)
         self.shows_help = draw_help(imgui, is_open=self.shows_help)
         self._draw_state(imgui, size)
 
