@@ -37,6 +37,7 @@ class AnimatedCopies:
     def __init__(self, layout: PoseLayout) -> None:
         self._layout = layout
         self._models: list[SceneModel | None] = []
+        self._free: list[int] = []
         self._now: Poses = layout.rest_poses(0)
         # Transform rows of the nodes that move, by copy.
         self._nodes = layout.things.get(_TRANSLATION, np.empty(0, np.intp))
@@ -44,22 +45,14 @@ class AnimatedCopies:
 
     def add(self, model: "SceneModel") -> int:
         """The number of a copy, which has the pose of the file."""
-        if None in self._models:
-            number = self._models.index(None)
+        if self._free:
+            number = self._free.pop()
             self._models[number] = model
         else:
             number = len(self._models)
             self._models.append(model)
             if number >= len(self._rows):
-                more = max(1, number)
-                empty = np.empty((more, len(self._nodes)), np.intp)
-                self._rows = np.concatenate([self._rows, empty])
-                self._now = {
-                    property_: np.concatenate([self._now[property_], column])
-                    for property_, column in self._layout.rest_poses(
-                        more
-                    ).items()
-                }
+                self._extend(max(1, number))
         self._rows[number] = model.rows[self._nodes]
         for property_, column in self._layout.rest.items():
             self._now[property_][number] = column
@@ -68,6 +61,7 @@ class AnimatedCopies:
     def remove(self, number: int) -> None:
         """Forget a copy; its number may be given to another."""
         self._models[number] = None
+        self._free.append(number)
 
     def take(self, copies: Sequence[int], poses: Poses) -> None:
         """Give ``copies`` (P,), each of them once, their poses."""
@@ -91,6 +85,16 @@ class AnimatedCopies:
                 }
                 if changed:
                     self._change(copy, changed)
+
+    def _extend(self, more: int) -> None:
+        """Make room for so many further copies."""
+        empty = np.empty((more, len(self._nodes)), np.intp)
+        self._rows = np.concatenate([self._rows, empty])
+        added = self._layout.rest_poses(more)
+        self._now = {
+            property_: np.concatenate([column, added[property_]])
+            for property_, column in self._now.items()
+        }
 
     def _move(
         self, copies: Rows, poses: Poses, moved: NDArray[np.bool_]

@@ -210,12 +210,18 @@ class Scene:
             raise OptionError(f"scene: {item!r} was not added to this scene")
         self.transforms.remove(rows)
 
-    def add_player(self, model: SceneModel, player: "AnimationPlayer") -> None:
-        """Let time pass for what plays a model's animations.
+    def player_of(self, model: SceneModel) -> "AnimationPlayer":
+        """A player for a model's animations, for which time passes here.
 
-        For :attr:`SceneModel.animations` alone.
+        For :attr:`SceneModel.animations` alone. Raises OptionError if the
+        model was removed.
         """
-        self._players[model] = player
+        from moka.scene.animation_player import AnimationPlayer
+
+        if model not in self._models:
+            raise OptionError(f"scene: {model!r} is not in this scene any more")
+        self._players[model] = AnimationPlayer(model, model.layout.clips)
+        return self._players[model]
 
     @property
     def is_animating(self) -> bool:

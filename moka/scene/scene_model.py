@@ -82,12 +82,12 @@ class SceneModel:
 
     @property
     def animations(self) -> "AnimationPlayer":
-        """What plays the animations of the model; nothing plays at first."""
-        if self._player is None:
-            from moka.scene.animation_player import AnimationPlayer
+        """What plays the animations of the model; nothing plays at first.
 
-            self._player = AnimationPlayer(self, self.layout.clips)
-            self.scene.add_player(self, self._player)
+        Raises OptionError if the model was removed before it is first used.
+        """
+        if self._player is None:
+            self._player = self.scene.player_of(self)
         return self._player
 
     @property

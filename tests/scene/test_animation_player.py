@@ -403,8 +403,13 @@ def test_values_that_mean_nothing_are_refused(model: SceneModel) -> None:
 def test_a_removed_model_is_not_animated(
     scene: Scene, model: SceneModel
 ) -> None:
+    other = scene.add(model.model)
     model.animations.play("slide")
-    model.remove()
+    for each in (model, other):
+        each.remove()
     scene.animate(0.5)
     scene.update()
     assert len(scene.transforms) == 0
+    # Its rows may be another's by now.
+    with pytest.raises(OptionError, match="is not in this scene any more"):
+        other.animations.play("slide")
