@@ -104,6 +104,8 @@ class MaterialDescription(Struct, frozen=True):
     influence_sets: int = 0
     # The attributes that morph targets change, in the order of MORPH_TEXELS.
     morphed: tuple[str, ...] = ()
+    # The set of coordinates to make tangents for, -1 if the mesh has them.
+    tangents_of: int = -1
 
     @property
     def deforms(self) -> bool:
@@ -119,11 +121,14 @@ class MaterialDescription(Struct, frozen=True):
     def attributes(self) -> tuple[str, ...]:
         """The vertex attributes that the shader reads, by glTF's names.
 
-        Corners of lines have LINE_OTHER besides.
+        Corners of lines have LINE_OTHER besides. Tangents that are made are
+        called TANGENT_OF_UV_0 or 1.
         """
+        made = self.tangents_of >= 0
+        tangent = f"TANGENT_OF_UV_{self.tangents_of}" if made else "TANGENT"
         wanted = {
             "NORMAL": Feature.VERTEX_NORMAL,
-            "TANGENT": Feature.VERTEX_TANGENT,
+            tangent: Feature.VERTEX_TANGENT,
             "TEXCOORD_0": Feature.UV_0,
             "TEXCOORD_1": Feature.UV_1,
             "COLOR_0": Feature.VERTEX_COLOUR,
@@ -155,8 +160,9 @@ def describe_material(
     surface or without texture coordinates, an emissive texture nothing
     under a black factor, a tangent nothing without a normal map. Points and
     lines without normals show base colour and emission, and have no normal
-    map without tangents (glTF 2.0, section 3.9.6). What animations change is
-    described so that every value can be drawn. Unless it ``carries``, no
+    map without tangents (glTF 2.0, section 3.9.6); surfaces without tangents
+    get them for a normal map (3.7.2.1). What animations change is described
+    so that every value can be drawn. Unless it ``carries``, no
     texture takes up the values of another.
     Raises ModelError for a texture coordinate set above 1.
     """
@@ -202,10 +208,14 @@ def describe_material(
         features |= Feature.PACKED_OCCLUSION
     for texture in slots.values():
         features |= Feature.UV_1 if texture.uv_set else Feature.UV_0
+    tangents_of = -1
     if not unlit and "NORMAL" in attributes:
         features |= Feature.VERTEX_NORMAL
         if "normal" in slots and "TANGENT" in attributes:
             features |= Feature.VERTEX_TANGENT
+        elif "normal" in slots and _wants_tangents(slots["normal"], morphed):
+            features |= Feature.VERTEX_TANGENT
+            tangents_of = slots["normal"].uv_set
     if "COLOR_0" in attributes:
         features |= Feature.VERTEX_COLOUR
     if material.double_sided:
@@ -227,7 +237,11 @@ def describe_material(
     )
     sets = sum(name.startswith("JOINTS_") for name in attributes)
     description = MaterialDescription(
-        features, tuple(uses), tuple(carriers.items()), sets
+        features,
+        tuple(uses),
+        tuple(carriers.items()),
+        sets,
+        tangents_of=tangents_of,
     )
     if not morphed:
         return description
@@ -236,6 +250,16 @@ def describe_material(
         name for name in chain(*MORPH_TEXELS.values()) if name in read
     )
     return replace(description, morphed=in_order)
+
+
+def _wants_tangents(texture: Texture, morphed: Collection[str]) -> bool:
+    """Whether tangents are made for the mesh of a normal map that has none.
+
+    Not where they would have to follow: vertices that targets move, and
+    coordinates that a transform turns, perhaps in time. There the shader
+    makes a frame for every pixel.
+    """
+    return texture.transform is None and not morphed
 
 
 def morph_texels(morphed: Collection[str]) -> dict[str, int]:

@@ -12,11 +12,25 @@ __all__ = ["Integers", "connected_components", "corner_links", "equal_rows"]
 
 Integers = NDArray[np.int64]
 
+# Odd and without pattern: that of MMIX's generator (Knuth).
+_MULTIPLIER = np.uint64(6364136223846793005)
+
 
 def equal_rows(rows: NDArray[np.float32]) -> Integers:
     """A number (N,) for each of ``rows`` (N, C), the same for equal rows."""
-    order = np.lexsort(rows.T)
-    differs = (rows[order][1:] != rows[order][:-1]).any(axis=1)
+    # One sort by a sum of all bits; -0 must have those of 0.
+    bits = np.ascontiguousarray(rows + np.float32(0)).view(np.uint32)
+    code = np.zeros(len(rows), np.uint64)
+    for column in bits.T:
+        code = (code ^ column) * _MULTIPLIER
+        code ^= code >> np.uint64(29)
+    order = np.argsort(code, kind="stable")
+    ordered = rows[order]
+    differs = (ordered[1:] != ordered[:-1]).any(axis=1)
+    if (differs & (code[order][1:] == code[order][:-1])).any():
+        # Different rows of one code may stand between equal ones.
+        order = np.lexsort(rows.T)
+        differs = (rows[order][1:] != rows[order][:-1]).any(axis=1)
     numbers = np.empty(len(rows), np.int64)
     numbers[order] = np.concatenate([[0], np.cumsum(differs)])
     return numbers
@@ -37,15 +51,16 @@ def corner_links(vertices: Integers, alive: NDArray[np.bool_]) -> Integers:
     low, high = np.minimum(start, end), np.maximum(start, end)
     key = low * (vertices.max(initial=0) + 1) + high
     # The how many-eth of its edge and direction each half-edge is.
-    order = np.lexsort((forward, key))
+    order = np.argsort(2 * key + forward, kind="stable")
     key, forward, edges = key[order], forward[order], edges[order]
     new_run = np.ones(len(edges), bool)
     new_run[1:] = (np.diff(key) != 0) | (forward[1:] != forward[:-1])
     places = np.arange(len(edges))
     rank = places - np.maximum.accumulate(np.where(new_run, places, 0))
-    # Equal ranks of the two directions now come next to each other.
-    order = np.lexsort((forward, rank, key))
-    key, rank, edges = key[order], rank[order], edges[order]
+    if rank.any():
+        # Then equal ranks of the two directions come next to each other.
+        order = np.lexsort((forward, rank, key))
+        key, rank, edges = key[order], rank[order], edges[order]
     pair = np.flatnonzero((np.diff(key) == 0) & (np.diff(rank) == 0))
     first, second = edges[pair], edges[pair + 1]
     links = np.full(len(vertices), -1, np.int64)

@@ -8,9 +8,10 @@ plane of the normal and weighted with the angle of its corner. A mirrored
 texture thus splits vertices, and so does every seam.
 
 The angular threshold is the reference's default of 180 degrees, with which
-it splits no group. Two things differ. Where the texture gives no direction,
-the tangent is some unit vector across the normal instead of +X, which may
-lie along it; and w is made for glTF, whose v runs downwards.
+it splits no group. Three things differ. Where the texture gives no
+direction, the tangent is some unit vector across the normal instead of +X,
+which may lie along it; w is made for glTF, whose v runs downwards; and all is
+computed in float64.
 
 Sources: Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", and
 his mikktspace.c; glTF 2.0 specification, section 3.7.2.1, which names it.
@@ -36,16 +37,22 @@ __all__ = ["with_tangents"]
 
 Flags = NDArray[np.bool_]
 
-# Lengths and areas up to this count as zero, as in the reference.
-_ZERO = float(np.finfo(np.float32).tiny)
+# Lengths and areas up to this count as zero. The reference takes float32's,
+# and then has no tangents for coordinates below 1e-19.
+_ZERO = float(np.finfo(np.float64).tiny)
 
 
-def with_tangents(primitive: Primitive, uv_set: int = 0) -> Primitive:
+def with_tangents(
+    primitive: Primitive, uv_set: int = 0, *, fill: bool = True
+) -> Primitive:
     """``primitive`` as a triangle list with TANGENT for TEXCOORD_``uv_set``.
 
-    Vertices are split where their triangles need different tangents; flat
-    normals are made first if there are none. Points and lines are returned
-    as they are. Raises ModelError if there are no such coordinates.
+    Vertices keep their places; those whose triangles need different tangents
+    are repeated at the end. Flat normals are made first if there are none.
+    Where the texture gives no direction tangents are zero, unless they are
+    to be ``fill``-ed with a unit vector across the normal. Points and lines
+    are returned as they are. Raises ModelError if there are no such
+    coordinates.
     """
     uv_name = f"TEXCOORD_{uv_set}"
     if uv_name not in primitive.attributes:
@@ -57,54 +64,49 @@ def with_tangents(primitive: Primitive, uv_set: int = 0) -> Primitive:
         primitive = with_flat_normals(primitive)
         triangles = triangle_corners(primitive)
     corners = triangles.reshape(-1).astype(np.int64)
-    vertices = equal_rows(
-        np.hstack(
-            [
-                primitive.attributes[name]
-                for name in ("POSITION", "NORMAL", uv_name)
-            ]
-        )
-    )[corners]
+    arrays = [
+        primitive.attributes[name] for name in ("POSITION", "NORMAL", uv_name)
+    ]
     points, normals, uvs = (
-        primitive.attributes[name][triangles].astype(np.float64)
-        for name in ("POSITION", "NORMAL", uv_name)
+        np.ascontiguousarray(array.T, np.float64) for array in arrays
     )
-    normals = normalise(normals)
+    points, normals, uvs = (
+        array.take(corners, axis=1).reshape(-1, len(triangles), 3)
+        for array in (points, _unit(normals), uvs)
+    )
     faces = _faces(points, uvs)
-    groups = _groups(faces, vertices)
-    shares = _shares(faces, points, normals).reshape(-1, 3)
-    leaders, group = np.unique(groups, return_inverse=True)
-    sums = np.stack([np.bincount(group, share) for share in shares.T], axis=-1)
-    # A corner of a vertex and a group is one vertex; -1 is a group too.
-    kept, indices = np.unique(
-        corners * len(leaders) + group, return_inverse=True
+    groups = _groups(faces, equal_rows(np.hstack(arrays))[corners])
+    leaders, group = _numbered(groups)
+    sums: Array = np.empty((len(leaders), 3))
+    for column, share in enumerate(_shares(faces, points, normals)):
+        sums[:, column] = np.bincount(group, share.reshape(-1), len(leaders))
+    vertex, kept_group, indices = _split(corners, group, primitive.vertex_count)
+    attributes, targets = primitive.attributes, primitive.targets
+    if len(vertex) > primitive.vertex_count:
+        attributes = {name: array[vertex] for name, array in attributes.items()}
+        targets = None if targets is None else targets.of_vertices(vertex)
+    tangents = np.empty((len(vertex), 4), np.float32)
+    tangents[:, :3] = _unit_across(
+        sums[kept_group], attributes["NORMAL"], fill=fill
     )
-    vertex, kept_group = kept // len(leaders), kept % len(leaders)
-    attributes = {
-        name: array[vertex] for name, array in primitive.attributes.items()
-    }
     leader = leaders[kept_group]
     upright = (leader < 0) | faces.upright[leader // 3]
-    attributes["TANGENT"] = np.column_stack(
-        [
-            _unit_across(sums[kept_group], attributes["NORMAL"]),
-            np.where(upright, 1.0, -1.0),
-        ]
-    ).astype(np.float32)
-    targets = primitive.targets
-    return Primitive(
-        attributes,
+    tangents[:, 3] = np.where(upright, 1.0, -1.0)
+    made = Primitive(
+        {**attributes, "TANGENT": tangents},
         indices,
         material=primitive.material,
-        targets=None if targets is None else targets.of_vertices(vertex),
+        targets=targets,
     )
+    made.variants = primitive.variants
+    return made
 
 
 @dataclass(slots=True)
 class _Faces:
     """What the T triangles say of the texture.
 
-    ``along_u`` (T, 3) are unit directions of growing u, ``upright`` whether
+    ``along_u`` (3, T) are unit directions of growing u, ``upright`` whether
     the texture is not mirrored, ``flat`` whether two corners are one point,
     ``blank`` whether the texture gives no direction.
     """
@@ -116,30 +118,31 @@ class _Faces:
 
 
 def _faces(points: Array, uvs: Array) -> _Faces:
-    """Of corners (T, 3, 3) and their texture coordinates (T, 3, 2)."""
-    edge, other = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
+    """Of corners (3, T, 3) and their texture coordinates (2, T, 3).
+
+    Components come first here and below: each is one array to work on.
+    """
+    edge, other = (points[:, :, i] - points[:, :, 0] for i in (1, 2))
+    (s, t), (other_s, other_t) = (uvs[:, :, i] - uvs[:, :, 0] for i in (1, 2))
     # v upwards, as for the reference.
-    uvs = uvs * (1.0, -1.0)
-    (s, t), (other_s, other_t) = (
-        (uvs[:, 1] - uvs[:, 0]).T,
-        (uvs[:, 2] - uvs[:, 0]).T,
-    )
+    t, other_t = -t, -other_t
     area = s * other_t - t * other_s
     upright = area > 0
-    along_u = other_t[:, None] * edge - t[:, None] * other
-    along_v = s[:, None] * other - other_s[:, None] * edge
-    length_u = np.linalg.norm(along_u, axis=1)
-    length_v = np.linalg.norm(along_v, axis=1)
+    along_u = other_t * edge - t * other
+    along_v = s * other - other_s * edge
     flat = (
-        (edge == 0).all(axis=1)
-        | (other == 0).all(axis=1)
-        | (edge == other).all(axis=1)
+        (edge == 0).all(axis=0)
+        | (other == 0).all(axis=0)
+        | (edge == other).all(axis=0)
     )
-    blank = (np.abs(area) <= _ZERO) | (
-        np.minimum(length_u, length_v) <= _ZERO * np.abs(area)
+    size = np.abs(area)
+    blank = (size <= _ZERO) | (
+        np.sqrt(np.minimum(_dot(along_u, along_u), _dot(along_v, along_v)))
+        <= _ZERO * size
     )
-    sign = np.where(upright, 1.0, -1.0)[:, None]
-    return _Faces(sign * normalise(along_u), upright, flat, blank)
+    return _Faces(
+        np.where(upright, 1.0, -1.0) * _unit(along_u), upright, flat, blank
+    )
 
 
 def _groups(faces: _Faces, vertices: Integers) -> Integers:
@@ -202,28 +205,83 @@ def _flood(
 
 
 def _shares(faces: _Faces, points: Array, normals: Array) -> Array:
-    """What each corner (T, 3) adds to its group's tangent, a vector."""
-    along_u = normalise(_project(faces.along_u[:, None], normals))
-    following = np.roll(points, -1, axis=1) - points
-    preceding = np.roll(points, 1, axis=1) - points
-    cosine = (
-        normalise(_project(following, normals))
-        * normalise(_project(preceding, normals))
-    ).sum(axis=-1)
-    angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+    """What each corner (3, T, 3) adds to its group's tangent, a vector."""
+    along_u = faces.along_u[:, :, None]
+    projected = _unit(along_u - _dot(along_u, normals) * normals)
+    # Angles between the edges as they are seen along the normal.
+    following = np.roll(points, -1, axis=2) - points
+    preceding = -np.roll(following, 1, axis=2)
+    following, preceding = (
+        _unit(edge - _dot(edge, normals) * normals)
+        for edge in (following, preceding)
+    )
+    angle = np.arccos(np.clip(_dot(following, preceding), -1.0, 1.0))
     angle[faces.flat | faces.blank] = 0.0
-    return np.asarray(angle[..., None] * along_u)
+    return np.asarray(angle * projected)
 
 
-def _project(vectors: Array, normals: Array) -> Array:
-    """The parts of ``vectors`` across unit ``normals``."""
-    along = (vectors * normals).sum(axis=-1, keepdims=True)
-    return np.asarray(vectors - along * normals)
+def _numbered(groups: Integers) -> tuple[Integers, Integers]:
+    """The leaders of all groups in order, and each corner's place there.
+
+    -1 is a group too.
+    """
+    is_leader = np.zeros(len(groups) + 1, np.bool_)
+    is_leader[groups] = True  # -1 is the last
+    is_leader = np.roll(is_leader, 1)
+    number = np.cumsum(is_leader) - 1
+    return np.flatnonzero(is_leader) - 1, number[groups + 1]
 
 
-def _unit_across(vectors: Array, normals: NDArray[np.float32]) -> Array:
-    """Unit vectors; where there is no direction, any across the normal."""
-    units = normalise(normals)
-    axis = np.eye(3)[np.abs(units).argmin(axis=-1)]
-    none = (np.abs(vectors) <= _ZERO).all(axis=-1, keepdims=True)
-    return normalise(np.where(none, _project(axis, units), vectors))
+def _split(
+    corners: Integers, group: Integers, count: int
+) -> tuple[Integers, Integers, Integers]:
+    """Vertices that belong to one group each.
+
+    Of C corners, which name ``count`` vertices and their groups: the old
+    vertex and the group of V new ones, and the new vertex of each corner.
+    The old ones are the first; a vertex that no corner names is in group 0.
+    """
+    own = np.zeros(count, np.int64)
+    own[corners] = group
+    loose = np.flatnonzero(own[corners] != group)
+    pair = corners[loose] * (group.max(initial=0) + 1) + group[loose]
+    pairs, place = np.unique(pair, return_inverse=True)
+    indices = corners.copy()
+    indices[loose] = count + place
+    vertex, other = np.divmod(pairs, group.max(initial=0) + 1)
+    return (
+        np.concatenate([np.arange(count), vertex]),
+        np.concatenate([own, other]),
+        indices,
+    )
+
+
+def _unit_across(
+    vectors: Array, normals: NDArray[np.float32], *, fill: bool
+) -> Array:
+    """Unit vectors (V, 3), or zero and what stands for it."""
+    units = np.ascontiguousarray(_unit(vectors.T).T)
+    none = np.flatnonzero((np.abs(vectors) <= _ZERO).all(axis=-1))
+    units[none] = 0.0
+    if fill and len(none):
+        across = normalise(normals[none])
+        axis = np.eye(3)[np.abs(across).argmin(axis=-1)]
+        along = (axis * across).sum(axis=-1, keepdims=True)
+        units[none] = normalise(axis - along * across)
+    return units
+
+
+def _dot(first: Array, second: Array) -> Array:
+    """Products of vectors whose components come first."""
+    x, y, z = first * second
+    return np.asarray(x + y + z)
+
+
+def _unit(vectors: Array) -> Array:
+    """Vectors of length 1, or 0; their components come first.
+
+    What is made of float32 neither overflows nor vanishes when squared.
+    """
+    length = np.sqrt(_dot(vectors, vectors))
+    length[length <= _ZERO] = 1.0
+    return vectors / length

@@ -25,7 +25,12 @@ from moka.commands.descriptors import (
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.model.mesh import INFLUENCES, Primitive
-from moka.renderer.vertices import LINE_OTHER, Vertices, vertices_of
+from moka.renderer.vertices import (
+    LINE_OTHER,
+    MADE_TANGENTS,
+    Vertices,
+    vertices_of,
+)
 
 __all__ = ["GeometryPool"]
 
@@ -34,6 +39,7 @@ _ATTRIBUTES = {
     "POSITION": ("position", 3),
     "NORMAL": ("normal", 3),
     "TANGENT": ("tangent", 4),
+    **dict.fromkeys(MADE_TANGENTS, ("tangent", 4)),
     "TEXCOORD_0": ("uv_0", 2),
     "TEXCOORD_1": ("uv_1", 2),
     "COLOR_0": ("colour_0", 4),

@@ -1,4 +1,7 @@
-"""What of a primitive goes to the GPU: its own vertices, or quads of lines."""
+"""What of a primitive goes to the GPU: its vertices, or made of them.
+
+Quads of lines, and vertices with the tangents that a normal map needs.
+"""
 
 from collections.abc import Mapping
 
@@ -10,7 +13,10 @@ from moka.commands.descriptors import Topology
 from moka.model.lines import LINES, line_segments
 from moka.model.mesh import Primitive
 
-__all__ = ["LINE_OTHER", "Vertices", "vertices_of"]
+__all__ = ["LINE_OTHER", "MADE_TANGENTS", "Vertices", "vertices_of"]
+
+#: The attributes of tangents that are made for a set of coordinates.
+MADE_TANGENTS = ("TANGENT_OF_UV_0", "TANGENT_OF_UV_1")
 
 #: The attribute of a quad's corner: the other end of the segment (xyz), and
 #: the side of this one as seen along the way there, 1 for left.
@@ -35,8 +41,12 @@ class Vertices(Struct, frozen=True, eq=False):
 def vertices_of(primitive: Primitive, wanted: tuple[str, ...]) -> Vertices:
     """The attributes ``wanted`` of a primitive, LINE_OTHER among them or not.
 
-    With it, each segment of a line is a quad of two triangles.
+    With it, each segment of a line is a quad of two triangles. One of
+    MADE_TANGENTS stands for the tangents that the primitive lacks.
     """
+    for uv_set, name in enumerate(MADE_TANGENTS):
+        if name in wanted:
+            return _with_tangents(primitive, uv_set, name)
     if LINE_OTHER not in wanted:
         return Vertices(
             primitive.attributes,
@@ -67,3 +77,13 @@ def vertices_of(primitive: Primitive, wanted: tuple[str, ...]) -> Vertices:
         Topology.TRIANGLES,
         len(own),
     )
+
+
+def _with_tangents(primitive: Primitive, uv_set: int, name: str) -> Vertices:
+    from moka.model.tangents import with_tangents
+
+    # Zero bends no normal: what a texture without direction should do.
+    made = with_tangents(primitive, uv_set, fill=False)
+    attributes = dict(made.attributes)
+    attributes[name] = attributes.pop("TANGENT")
+    return Vertices(attributes, made.indices, made.topology, made.vertex_count)

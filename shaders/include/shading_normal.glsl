@@ -43,11 +43,13 @@ vec3 front_normal() {
 
 #ifdef MOKA_NORMAL_TEXTURE
 
-// A tangent frame from screen-space derivatives of position and texture
-// coordinate: Schueler 2013, "Normal Mapping without Precomputed Tangents".
-// glTF's y points up in the image and v down, hence the minus. Mirrored
-// coordinates come out right by themselves.
-mat3 cotangent_frame(vec3 n, vec2 uv) {
+// The frame that MikkTSpace gives to a triangle by itself, from screen-space
+// derivatives of position and texture coordinate: how the place moves with u,
+// across the normal, and at right angles to both. Mikkelsen 2008, "Simulation
+// of Wrinkled Surfaces Revisited". glTF's y points up in the image and v
+// down, hence the minus. For what moves its vertices or its coordinates, and
+// for triangles that have no normals.
+mat3 tangent_frame(vec3 n, vec2 uv) {
     vec3 dp1 = dFdx(surface_position);
     vec3 dp2 = dFdy(surface_position);
     vec2 duv1 = dFdx(uv);
@@ -60,16 +62,14 @@ mat3 cotangent_frame(vec3 n, vec2 uv) {
     size = largest_component(vec3(max(abs(duv1), abs(duv2)), 1e-37));
     duv1 /= size;
     duv2 /= size;
-    // The construction wants n on the side that is seen.
-    float side = FRONT_FACING ? 1.0 : -1.0;
-    vec3 dp2_perpendicular = cross(dp2, side * n);
-    vec3 dp1_perpendicular = cross(side * n, dp1);
-    vec3 t = dp2_perpendicular * duv1.x + dp1_perpendicular * duv2.x;
-    vec3 b = -(dp2_perpendicular * duv1.y + dp1_perpendicular * duv2.y);
-    float squared = max(dot(t, t), dot(b, b));
+    // Both are times the area that the coordinates cover, with its sign.
+    vec3 t = dp1 * duv2.y - dp2 * duv1.y;
+    vec3 b = dp1 * duv2.x - dp2 * duv1.x;
+    float side = duv1.x * duv2.y < duv1.y * duv2.x ? -1.0 : 1.0;
+    t = direction_of(side * (t - n * dot(n, t)));
     // Degenerate coordinates: no direction to bend the normal in.
-    float scale = squared > 0.0 ? inversesqrt(squared) : 0.0;
-    return mat3(t * scale, b * scale, n);
+    vec3 up = cross(n, t);
+    return mat3(t, side * dot(up, b) < 0.0 ? -up : up, n);
 }
 
 vec3 mapped_normal(vec3 n, MaterialsRow row) {
@@ -86,7 +86,7 @@ vec3 mapped_normal(vec3 n, MaterialsRow row) {
     vec3 b = cross(n, t) * surface_tangent.w;
     vec3 mapped = mat3(t, b, n) * texel;
 #else
-    vec3 mapped = cotangent_frame(n, uv) * texel;
+    vec3 mapped = tangent_frame(n, uv) * texel;
 #endif
     float squared = dot(mapped, mapped);
     return squared > 0.0 ? mapped * inversesqrt(squared) : n;

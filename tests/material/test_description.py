@@ -57,6 +57,37 @@ def test_tangents_are_read_for_a_normal_map_only() -> None:
     assert flat.textures == ()
 
 
+def test_a_normal_map_gets_tangents_where_there_are_none() -> None:
+    bare = [name for name in ALL if name != "TANGENT"]
+    for uv_set in (0, 1):
+        texture = Texture(IMAGE, uv_set=uv_set)
+        description = describe_material(Material(normal_texture=texture), bare)
+        assert Feature.VERTEX_TANGENT in description.features
+        assert f"TANGENT_OF_UV_{uv_set}" in description.attributes
+        assert "TANGENT" not in description.attributes
+
+
+@pytest.mark.parametrize(
+    ("changes", "missing", "morphed"),
+    [
+        ({}, {"NORMAL"}, ()),
+        ({}, {"TEXCOORD_0"}, ()),
+        ({}, set(), ("POSITION",)),
+        ({"transform": TextureTransform()}, set(), ()),
+    ],
+)
+def test_no_tangents_are_made_where_they_would_not_hold(
+    changes: dict[str, Any], missing: set[str], morphed: tuple[str, ...]
+) -> None:
+    material = Material(normal_texture=Texture(IMAGE, **changes))
+    description = describe_material(
+        material, set(ALL) - {"TANGENT"} - missing, morphed=morphed
+    )
+    assert not any("TANGENT" in name for name in description.attributes)
+    without = describe_material(Material(), set(ALL) - {"TANGENT"})
+    assert not any("TANGENT" in name for name in without.attributes)
+
+
 def test_an_emissive_texture_under_a_black_factor_is_left_out() -> None:
     dark = describe(emissive_texture=Texture(IMAGE))
     assert dark.textures == ()

@@ -11,12 +11,14 @@ from moka.commands.descriptors import Topology
 from moka.core.errors import ModelError
 from moka.model import (
     Primitive,
+    adjacency,
     quad,
     sphere,
     triangle_corners,
     with_flat_normals,
     with_tangents,
 )
+from moka.model.morphs import MorphTargets
 from tests.model.mikktspace import corner_tangents
 
 Array = np.ndarray[Any, Any]
@@ -228,3 +230,69 @@ def test_any_triangles_agree_with_the_oracle(primitive: Primitive) -> None:
 
 def test_flat_shading_and_tangents_go_together() -> None:
     check_against_oracle(with_flat_normals(grid(3, 3)))
+
+
+def test_vertices_keep_their_places() -> None:
+    x = np.tile(np.arange(5.0), 3)
+    uv = np.stack([np.abs(x - 2), -np.repeat(np.arange(3.0), 5)], -1)
+    primitive = grid(4, 2, uv)
+    made = with_tangents(primitive)
+    assert made.vertex_count > primitive.vertex_count
+    for name, array in primitive.attributes.items():
+        np.testing.assert_array_equal(
+            made.attributes[name][: primitive.vertex_count], array
+        )
+
+
+def test_what_no_triangle_names_stays_too() -> None:
+    base = grid(2, 2)
+    assert base.indices is not None
+    primitive = Primitive(base.attributes, base.indices[:3])
+    made = with_tangents(primitive)
+    assert made.vertex_count == primitive.vertex_count
+    lengths = np.linalg.norm(made.attributes["TANGENT"][:, :3], axis=1)
+    np.testing.assert_allclose(lengths, 1, atol=1e-6)
+
+
+def test_targets_go_with_their_vertices() -> None:
+    x = np.tile(np.arange(5.0), 3)
+    uv = np.stack([np.abs(x - 2), -np.repeat(np.arange(3.0), 5)], -1)
+    base = grid(4, 2, uv)
+    moved = np.arange(45, dtype=np.float32).reshape(15, 3)
+    primitive = Primitive(
+        base.attributes,
+        base.indices,
+        targets=MorphTargets([{"POSITION": moved}]),
+    )
+    made = with_tangents(primitive)
+    assert made.targets is not None
+    found = made.targets.deltas[0]["POSITION"]
+    order, new_order = triangle_corners(primitive), triangle_corners(made)
+    np.testing.assert_array_equal(found[new_order], moved[order])
+
+
+def test_no_direction_is_zero_where_nothing_is_to_be_filled_in() -> None:
+    primitive = Primitive(
+        {
+            "POSITION": [(0, 0, 0), (0, 1, 0), (0, 0, 1)],
+            "NORMAL": [(1, 0, 0)] * 3,
+            "TEXCOORD_0": [(0.5, 0.5)] * 3,
+        }
+    )
+    tangents = with_tangents(primitive, fill=False).attributes["TANGENT"]
+    assert tangents.tolist() == [[0, 0, 0, 1]] * 3
+
+
+@pytest.mark.parametrize("multiplier", [None, 0])
+def test_equal_rows_have_equal_numbers(
+    monkeypatch: pytest.MonkeyPatch, multiplier: int | None
+) -> None:
+    if multiplier is not None:  # every code is that of all others
+        monkeypatch.setattr(adjacency, "_MULTIPLIER", np.uint64(multiplier))
+    random = np.random.default_rng(8)
+    rows = random.integers(-1, 2, (300, 4)).astype(np.float32)
+    rows *= random.choice([-1, 1], rows.shape)  # 0 becomes -0 as well
+    numbers = adjacency.equal_rows(rows)
+    _, expected = np.unique(rows + 0, axis=0, return_inverse=True)
+    pairs = set(zip(numbers.tolist(), expected.tolist(), strict=True))
+    assert len(pairs) == expected.max() + 1 == numbers.max() + 1
