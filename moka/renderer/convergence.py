@@ -14,15 +14,18 @@ TILE = 32
 
 # A frame this long still lets a window answer.
 _FRAME_SAMPLES = 8
+# The spread of fewer batches says too little: it is that of a thousand pixels
+# of a tile.
+_BATCHES_TO_TRUST = 4
 # Where an error decides, a batch is as long as the step in which to stop;
 # else as long as leaves enough batches to tell the error. Longer ones have
-# more of what a low-discrepancy sequence gives over random numbers: 1024
-# samples in batches of 64 in place of 32 have 4/5 of the error.
+# more of what a low-discrepancy sequence gives over random numbers. Under a
+# beach 1024 samples in 4 batches have a relative RMSE of 0.008 and a median
+# error of 0.0028, in 16 batches 0.014 and 0.0038.
 _STEP_SAMPLES = 32
-_FEWEST_BATCHES = 16
-
-# The spread of fewer batches says too little to stop by.
-_BATCHES_TO_TRUST = 4
+# Frames of a batch, where it has the samples: each sees other points of the
+# pixels, which edges need.
+_FEWEST_FRAMES = 4
 
 
 class Schedule(Struct, frozen=True):
@@ -38,10 +41,10 @@ class Schedule(Struct, frozen=True):
 
         ``stops_early`` is for sampling that an error may end sooner.
         """
-        batch = max(total // _FEWEST_BATCHES, 1)
+        batch = max(total // _BATCHES_TO_TRUST, 1)
         if stops_early:
             batch = min(batch, _STEP_SAMPLES)
-        frames = -(-batch // _FRAME_SAMPLES)
+        frames = max(-(-batch // _FRAME_SAMPLES), min(batch, _FEWEST_FRAMES))
         samples = -(-batch // frames)
         return cls(samples, frames, -(-total // (samples * frames)))
 

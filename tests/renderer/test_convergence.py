@@ -22,8 +22,9 @@ def test_a_schedule_has_the_samples_and_few_more(total, stops_early):
     assert schedule.samples <= 8
     assert not stops_early or batch <= 32
     assert schedule.total_frames == schedule.frames * schedule.batches
-    # Enough batches to tell their spread, where there are samples for it.
-    assert schedule.batches >= min(total, 12)
+    # Enough batches to tell their spread, and frames for edges.
+    assert schedule.batches >= min(total, 4)
+    assert schedule.total_frames >= min(total, 12)
 
 
 @given(
