@@ -13,6 +13,7 @@ from moka.material.material import Material
 
 if TYPE_CHECKING:
     from moka.model.morphs import MorphTargets
+    from moka.model.skins import JointBoxes
 
 __all__ = [
     "ATTRIBUTES",
@@ -70,17 +71,18 @@ class Primitive:
     Only POSITION is always there. Arrays read from a file may be read-only,
     strided, and shared between primitives. ``indices`` is uint32 (M,) or
     None, ``targets`` are morph targets or None, ``material`` is None for
-    glTF's default.
-    ``vertex_count``, ``index_count`` and ``bounds``, the least and the
-    greatest position, stay after :meth:`release`. ``variants`` are materials
-    by the number of the model's variant in which they take the place of
-    ``material``. ``geometry`` is the same object for all that share arrays.
+    glTF's default. ``vertex_count``, ``index_count`` and ``bounds``, the
+    least and the greatest position, stay after :meth:`release`.
+    ``variants`` are materials by the number of the model's variant in which
+    they take the place of ``material``. ``geometry`` is the same object for
+    all that share arrays.
 
     Raises ModelError for attributes or indices of a wrong shape, positions
     that are not finite, and indices of vertices that do not exist.
     """
 
     __slots__ = (
+        "_joint_boxes",
         "_shared",
         "attributes",
         "bounds",
@@ -111,6 +113,7 @@ class Primitive:
         self.variants: dict[int, Material] = {}
         self.geometry = object()
         self._shared: dict[Material, Primitive] = {}
+        self._joint_boxes: JointBoxes | None = None
         self.attributes: dict[str, NDArray[np.float32]] = {
             name: np.asarray(attributes[name], np.float32)
             for name in ATTRIBUTES
@@ -157,6 +160,15 @@ class Primitive:
     def influence_sets(self) -> int:
         """Sets of four joints that its vertices follow; 0 if it is rigid."""
         return sum(name.startswith("JOINTS_") for name in self.attributes)
+
+    @property
+    def joint_boxes(self) -> "JointBoxes":
+        """The boxes of the joints that it follows, found when first asked."""
+        if self._joint_boxes is None:
+            from moka.model.skins import joint_boxes
+
+            self._joint_boxes = joint_boxes(self)
+        return self._joint_boxes
 
     @property
     def morphed(self) -> frozenset[str]:

@@ -5,7 +5,7 @@ import numpy as np
 from moka.core.maths import Array, transform_bounds, union_bounds
 from moka.model.mesh import Mesh, Primitive
 from moka.model.nodes import NodeTree
-from moka.model.skins import Skin, joint_boxes, skin_matrices
+from moka.model.skins import Skin, skin_matrices
 
 __all__ = ["posed_bounds"]
 
@@ -40,7 +40,7 @@ def posed_bounds(
 def _skinned(
     primitive: Primitive, world: Array, skin: Skin, spread: Array
 ) -> Array:
-    around = joint_boxes(primitive)
+    around = primitive.joint_boxes
     joints = skin.joints[around.joints]
     matrices = skin_matrices(world[joints], skin.inverse_bind[around.joints])
     return union_bounds(transform_bounds(matrices, around.boxes + spread))

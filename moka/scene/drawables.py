@@ -223,7 +223,8 @@ class Drawables:
 
     def refresh(self, tree: TransformTree) -> None:
         """Follow what moved in ``tree``, and poses, since the last call."""
-        if self._version == tree.version and self.poses is None:
+        still = self.poses is None or not self.poses.morphs.has_changed
+        if self._version == tree.version and still:
             return
         touched = np.zeros(len(tree.world), np.bool_)
         touched[tree.changed_since(self._version)] = True

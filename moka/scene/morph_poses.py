@@ -69,9 +69,14 @@ class MorphPoses:
             group = MorphGroup(position, each.targets, draws, places)
             self.groups.append(group)
 
+    @property
+    def has_changed(self) -> bool:
+        """Whether weights have changed since the last :meth:`refresh`."""
+        return self._versions() != self._seen
+
     def refresh(self) -> Rows:
         """Follow the weights; the draws whose own have changed."""
-        seen = tuple(source.version for source in self._sources)
+        seen = self._versions()
         if seen == self._seen:
             return NO_ROWS
         values = np.concatenate(
@@ -93,3 +98,6 @@ class MorphPoses:
                 self.version[draws] += 1
                 stale.append(draws)
         return np.concatenate(stale)
+
+    def _versions(self) -> tuple[int, ...]:
+        return tuple(source.version for source in self._sources)

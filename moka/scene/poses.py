@@ -10,8 +10,9 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
+from moka.core.errors import ModelError
 from moka.core.maths import Array, transform_bounds
-from moka.model.skins import JointBoxes, Skin, joint_boxes
+from moka.model.skins import Skin
 from moka.scene.forest import Rows
 from moka.scene.morph_poses import MorphPoses
 from moka.scene.morph_weights import MorphWeights
@@ -38,7 +39,8 @@ class Poses:
     (D,): its row and its position in the model's own nodes and skins. Then
     ``skin`` (D,) is the number of a draw's skin in ``skins``, -1 for what
     follows its node; ``morphs`` are the weights of targets. ``version``
-    counts the updates that changed a pose.
+    counts the updates that changed a pose. Raises ModelError if a mesh that
+    was made in memory follows a joint which is not there.
     """
 
     def __init__(
@@ -60,7 +62,10 @@ class Poses:
         )
         self._rest_bounds = drawables.local_bounds.copy()
         self._skinned: Rows = np.flatnonzero(self.skin >= 0)
-        boxes = _boxes_of(drawables, self._skinned)
+        boxes = [
+            drawables.primitives[position].joint_boxes
+            for position in drawables.primitive[self._skinned].tolist()
+        ]
         count = np.array([len(each.joints) for each in boxes], np.intp)
         self._box_count: Rows = count
         self._box_draw: Rows = np.repeat(self._skinned, count)
@@ -70,9 +75,10 @@ class Poses:
         own = np.concatenate(
             [np.empty(0, np.intp), *(each.joints for each in boxes)]
         )
-        self._box_joint: Rows = (
-            own + self.skins.first[self.skin[self._box_draw]]
-        )
+        skin = self.skin[self._box_draw]
+        if (own >= self.skins.count[skin]).any():
+            raise ModelError("a mesh follows a joint that its skin lacks")
+        self._box_joint: Rows = own + self.skins.first[skin]
 
     def refresh(
         self,
@@ -163,13 +169,3 @@ def _find_skins(
             rows.append(model.rows[skin.joints])
             inverse_bind.append(skin.inverse_bind)
     return skin_of_draw, SkinPoses(rows, inverse_bind)
-
-
-def _boxes_of(drawables: "Drawables", draws: Rows) -> list[JointBoxes]:
-    """The boxes of the joints that each draw follows, each found once."""
-    found: dict[int, JointBoxes] = {}
-    positions = drawables.primitive[draws].tolist()
-    for position in positions:
-        if position not in found:
-            found[position] = joint_boxes(drawables.primitives[position])
-    return [found[position] for position in positions]

@@ -3,10 +3,12 @@
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from moka.core.errors import ModelError
 from moka.model import load_model
 from moka.model.model import Model
 from moka.scene.poses import Poses
@@ -189,3 +191,14 @@ def test_a_plain_scene_has_no_poses() -> None:
     scene.update()
     assert scene.drawables.poses is None
     assert scene.pose_version == 0
+
+
+def test_a_joint_that_is_not_there_is_an_error() -> None:
+    """In a model made in memory; those of files are checked when read."""
+    model = load(Character(joints=5))
+    model.skins[0].joints = model.skins[0].joints[:2]
+    model.skins[0].inverse_bind = model.skins[0].inverse_bind[:2]
+    scene = Scene()
+    scene.add(model)
+    with pytest.raises(ModelError, match="joint that its skin lacks"):
+        scene.update()
