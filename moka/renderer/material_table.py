@@ -27,10 +27,7 @@ class MaterialPlace(Struct, frozen=True):
 
 
 class MaterialTable:
-    """Places of materials; the table is written once when it is made.
-
-    Only pages with materials that animations change are written again.
-    """
+    """Places of materials; rows are written again where numbers change."""
 
     def __init__(
         self,
@@ -41,7 +38,7 @@ class MaterialTable:
         self._device = device
         self._places: dict[Hashable, MaterialPlace] = {}
         self.pages: list[Handle] = []
-        self._live_rows: dict[Handle, NDArray[np.void]] = {}
+        self._rows: dict[Handle, NDArray[np.void]] = {}
         for has_transforms in (False, True):
             members = list(
                 dict.fromkeys(
@@ -73,20 +70,20 @@ class MaterialTable:
                     continue
                 row = place.row
                 materials_layout(has_transforms=has_transforms).fill(
-                    self._live_rows[place.page][row : row + 1],
+                    self._rows[place.page][row : row + 1],
                     material_values(now, has_transforms=has_transforms),
                 )
                 first, last = spans.get(place.page, (row, row))
                 spans[place.page] = min(first, row), max(last, row)
         for page, (first, last) in spans.items():
-            rows = self._live_rows[page]
+            rows = self._rows[page]
             yield page, rows[first : last + 1], first * rows.itemsize
 
     def destroy(self) -> None:
         """Destroy the pages."""
         self._device.destroy(*self.pages)
         self.pages.clear()
-        self._live_rows.clear()
+        self._rows.clear()
 
     def _write(
         self, materials: list[Material], *, has_transforms: bool
@@ -111,8 +108,7 @@ class MaterialTable:
                 rows.tobytes(),
             )
             self.pages.append(page)
-            if is_live:
-                self._live_rows[page] = rows
+            self._rows[page] = rows
             for index, material in enumerate(members):
                 self._places[material, has_transforms] = MaterialPlace(
                     page, index

@@ -1,4 +1,4 @@
-"""Materials that animations change, as they are now."""
+"""Materials that animations or people change, as they are now."""
 
 from collections.abc import Iterable
 
@@ -22,6 +22,10 @@ class LiveMaterials:
         """Let ``material`` have the numbers of ``now``."""
         self.version += 1
         self._now[material] = now, self.version
+
+    def now(self, material: Material) -> Material:
+        """What stands in for ``material``, or itself."""
+        return self._now.get(material, (material, 0))[0]
 
     def changed_since(self, version: int) -> list[tuple[Material, Material]]:
         """Materials that changed after ``version``, and what they are now."""

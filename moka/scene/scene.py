@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import ArrayLike, NDArray
 
 from moka.core.errors import OptionError
 from moka.core.maths import Array
 from moka.lighting.environment import BRIGHTEST
+from moka.material.material import Material
 from moka.model.lights import PunctualLight
 from moka.model.model import Model
 from moka.scene.background import Background, parse_background
@@ -145,14 +147,42 @@ class Scene:
                 "one its own and make that the parent"
             )
         added = SceneModel(self, layout, place)
-        if added.own_materials and self.live_materials is None:
-            from moka.scene.live_materials import LiveMaterials
-
-            self.live_materials = LiveMaterials()
+        if added.own_materials:
+            self._live()
         self._models[added] = None
         self._model_rows.update(added.rows.tolist(), [place.row])
         self.structure_version += 1
         return added
+
+    def edit_material(self, material: Material, **factors: Any) -> None:
+        """Draw what has ``material`` with other numbers from now on.
+
+        ``material`` is that of a primitive of this scene, as it was
+        loaded, ``factors`` are fields of :class:`moka.Material` that are
+        numbers; those that are not given stay as they are now. Nothing is
+        compiled or uploaded but one row.
+
+        Raises OptionError for what is no number of a material, and for
+        numbers that another program would have to draw: emission of a
+        material that has none, or the metalness of a pure metal.
+        """
+        from moka.material.numbers import check_numbers
+
+        check_numbers(material, factors)
+        live = self._live()
+        live.set(material, replace(live.now(material), **factors))
+
+    def material_now(self, material: Material) -> Material:
+        """``material`` with the numbers that it is drawn with."""
+        live = self.live_materials
+        return material if live is None else live.now(material)
+
+    def _live(self) -> "LiveMaterials":
+        if self.live_materials is None:
+            from moka.scene.live_materials import LiveMaterials
+
+            self.live_materials = LiveMaterials()
+        return self.live_materials
 
     def layout_of(
         self, model: Model, scene: int, variant: int | None
