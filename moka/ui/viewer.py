@@ -46,6 +46,7 @@ from moka.ui.interface import Interface
 from moka.ui.orbit_controls import OrbitControls
 from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
 from moka.ui.panels.help import draw_help
+from moka.ui.panels.inspector import InspectorPanel
 from moka.ui.panels.model import ModelPanel
 from moka.ui.panels.panel import Panel
 from moka.ui.panels.picture import PicturePanel
@@ -104,6 +105,7 @@ class Viewer(App):
             EnvironmentPanel(),
             LightingPanel(),
             SceneTreePanel(),
+            InspectorPanel(),
         ]
         self.interface: Interface
         self._work = BackgroundWork(self.request_redraw)
