@@ -147,11 +147,14 @@ def rest_transforms(
 
     As ``known`` has them; the matrices of other nodes are taken apart.
     """
+    if known is None:
+        return decompose(tree.local[rows])
+    if np.array_equal(rows, known.nodes):
+        return known.translation, known.rotation, known.scale
     parts = decompose(tree.local[rows])
-    if known is not None:
-        given = np.isin(rows, known.nodes)
-        source = np.searchsorted(known.nodes, rows[given])
-        parts[0][given] = known.translation[source]
-        parts[1][given] = known.rotation[source]
-        parts[2][given] = known.scale[source]
+    given = np.isin(rows, known.nodes)
+    source = np.searchsorted(known.nodes, rows[given])
+    parts[0][given] = known.translation[source]
+    parts[1][given] = known.rotation[source]
+    parts[2][given] = known.scale[source]
     return parts

@@ -59,8 +59,7 @@ class Clips:
         if sampler is None:
             channels = self._model.animations[number].channels
             sampler = self._samplers[number] = KeyframeSampler(
-                channels,
-                [self.layout.places(channel.target) for channel in channels],
+                channels, self.layout.places(channels)
             )
         poses = self.layout.rest_poses(len(times))
         for property_, places, values in sampler.sample(times):

@@ -6,13 +6,19 @@ different things still have poses of one shape, and can be blended.
 """
 
 from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from moka.core.interpolation import lerp, slerp
 from moka.core.maths import Array
-from moka.model.animation import AnimationTarget, Property, rest_transforms
+from moka.model.animation import (
+    AnimationChannel,
+    AnimationTarget,
+    Property,
+    rest_transforms,
+)
 from moka.model.model import Model
 from moka.scene.animated_material import material_value
 from moka.scene.forest import Rows
@@ -43,9 +49,7 @@ class PoseLayout:
         for animation in model.animations:
             for channel in animation.channels:
                 target = channel.target
-                found[target.kind, target.property].update(
-                    self._things(target).tolist()
-                )
+                found[target.kind, target.property].update(self._things(target))
         moved = set().union(
             *(found.pop(("node", name), ()) for name in _TRANSFORM)
         )
@@ -72,19 +76,30 @@ class PoseLayout:
             for property_, column in self.rest.items()
         }
 
-    def places(self, target: AnimationTarget) -> Rows:
-        """The rows of a target in the column of its property."""
-        column = self.things[target.kind, target.property]
-        return np.searchsorted(column, self._things(target))
+    def places(self, channels: Iterable[AnimationChannel]) -> list[Rows]:
+        """For each channel its rows in the column of its property."""
+        row_of = {
+            property_: dict(
+                zip(things.tolist(), range(len(things)), strict=True)
+            )
+            for property_, things in self.things.items()
+        }
+        places = []
+        for channel in channels:
+            target = channel.target
+            rows = row_of[target.kind, target.property]
+            things = self._things(target)
+            places.append(np.array([rows[thing] for thing in things], np.intp))
+        return places
 
-    def _things(self, target: AnimationTarget) -> Rows:
+    def _things(self, target: AnimationTarget) -> Sequence[int]:
         if target.property != "weights":
-            return np.array([target.index], np.intp)
+            return (target.index,)
         where = self._weights.slice_of(target.index)
-        all_of_node = np.arange(where.start, where.stop, dtype=np.intp)
+        all_of_node = range(where.start, where.stop)
         if target.element is None:
             return all_of_node
-        return all_of_node[[target.element]]
+        return (all_of_node[target.element],)
 
 
 def blended(first: Poses, second: Poses, weight: float) -> Poses:

@@ -89,7 +89,7 @@ def report(
     animation = max(model.model.animations, key=lambda a: len(a.channels))
     number = model.model.animations.index(animation)
     clips = model.layout.clips
-    places = [clips.layout.places(each.target) for each in animation.channels]
+    places = clips.layout.places(animation.channels)
     sampler = KeyframeSampler(animation.channels, places)
     step = animation.duration / 97 or 1.0
     results["sample"] = timed(

@@ -1,5 +1,6 @@
 """Keyframes sampled all at once, against one at a time in float64."""
 
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -186,3 +187,30 @@ def test_tangents_are_per_second() -> None:
     for time in (0.5, 1.0, 3.25):
         (got,) = sampled([each], time)
         np.testing.assert_allclose(got, [2 * time], rtol=1e-15)
+
+
+def test_no_channel_costs_a_call_of_its_own() -> None:
+    """Python's work is the same for ten thousand channels as for a few."""
+
+    def calls(count: int) -> int:
+        channels = random_channels(np.random.default_rng(1), count)
+        widths = [
+            each.values.shape[-1] if each.target.property == "weights" else 1
+            for each in channels
+        ]
+        ends = np.cumsum(widths)
+        places = [
+            np.arange(end - width, end)
+            for width, end in zip(widths, ends.tolist(), strict=True)
+        ]
+        sampler = KeyframeSampler(channels, places)
+        times = np.array([2.5])
+        seen: list[object] = []
+        sys.setprofile(lambda *event: seen.append(event))
+        try:
+            list(sampler.sample(times))
+        finally:
+            sys.setprofile(None)
+        return len(seen)
+
+    assert calls(10_000) == calls(3_000)
