@@ -107,7 +107,8 @@ class GltfFile:
         """The bytes of the file."""
         self.binary += bytes(-len(self.binary) % 4)
         document = {key: value for key, value in self.document.items() if value}
-        document["extensionsUsed"] = sorted(_extensions(document))
+        if used := _extensions(document):
+            document["extensionsUsed"] = sorted(used)
         if self.binary:
             document["buffers"] = [{"byteLength": len(self.binary)}]
         text = json.dumps(document).encode()
