@@ -55,11 +55,14 @@ class MorphTargets:
             for name, array in target.items():
                 if array.ndim != 2 or array.shape[1] != MORPHED[name]:
                     raise ModelError(
-                        f"target {number}: {name} has the shape {array.shape}"
+                        f"{name} of target {number} has the shape {array.shape}"
                     )
                 # NaN passes through both, and an infinity is an extreme.
                 if not np.isfinite([array.min(), array.max()]).all():
-                    raise ModelError(f"target {number}: {name} is not finite")
+                    raise ModelError(
+                        f"{name} of target {number} has entries that are not "
+                        "finite"
+                    )
 
     def __len__(self) -> int:
         return len(self.deltas)
@@ -183,7 +186,10 @@ def read_targets(
                 if name in MORPHED and name in present
             }
         )
-    return MorphTargets(deltas)
+    try:
+        return MorphTargets(deltas)
+    except ModelError as error:
+        raise source.error(f"{path}.targets", str(error)) from error
 
 
 def _read_deltas(
@@ -210,8 +216,6 @@ def _read_deltas(
             path,
             f"has {len(array)} elements, POSITION has {vertex_count}",
         )
-    if not np.isfinite([array.min(), array.max()]).all():
-        raise source.error(path, "has NaN or infinite entries")
     if array.shape[1] < width:
         padded = np.zeros((vertex_count, width), np.float32)
         padded[:, : array.shape[1]] = array

@@ -161,6 +161,8 @@ def _find_skins(
     inverse_bind: list[Array] = []
     skin_of_draw = np.full(len(owner), -1)
     for number, model in enumerate(models):
+        if not model.skins:
+            continue
         draws = np.flatnonzero((owner == number) & (model_skin >= 0))
         used, own = np.unique(model_skin[draws], return_inverse=True)
         skin_of_draw[draws] = own + len(rows)

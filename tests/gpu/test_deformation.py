@@ -13,10 +13,16 @@ import pytest
 from numpy.typing import NDArray
 
 from moka.commands.command_list import CommandList
+from moka.core.encoded_image import EncodedImage
 from moka.core.png import encode_png
 from moka.graphics.device import GraphicsDevice
+from moka.material.description import describe_material
+from moka.material.material import Material, Texture
 from moka.model import cube, load_model, quad
 from moka.model.cameras import Orthographic
+from moka.model.mesh import ATTRIBUTES, INFLUENCES
+from moka.model.morphs import MORPHED
+from moka.renderer.permutation import LightingDescription, Permutation
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
 from moka.renderer.surface_values import unpack_values
@@ -251,3 +257,29 @@ def test_morphed_coordinates_read_another_part_of_a_texture(
         layers = stage.values(look_along(2, np.zeros(3), 1.0))
         middle = layers["albedo"][SIZE // 2, SIZE // 2]
         np.testing.assert_allclose(middle, colour, atol=1e-3)
+
+
+def test_all_inputs_of_a_vertex_fit_at_once(
+    egl_device: GraphicsDevice,
+) -> None:
+    """Sixteen attributes, which is what OpenGL 3.3 promises."""
+    image = EncodedImage("grey", data=encode_png(np.zeros((2, 2, 3), "u1")))
+    material = Material(
+        normal_texture=Texture(image),
+        base_colour_texture=Texture(image, uv_set=1),
+    )
+    description = describe_material(
+        material, list(ATTRIBUTES), morphed=[*MORPHED]
+    )
+    assert description.attributes == (
+        *(name for name in ATTRIBUTES if name not in INFLUENCES),
+        *(
+            f"{kind}_{number}"
+            for number in range(3)
+            for kind in ("JOINTS", "WEIGHTS")
+        ),
+    )
+    lighting = LightingDescription(False, 2, "gltf", "lambert", True, False)
+    egl_device.create_program(
+        Permutation(description, lighting).program(), wait=True
+    )

@@ -151,3 +151,26 @@ def test_broken_targets_are_named_in_one_line(
         load_model(glb(document))
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf])
+def test_deltas_that_are_not_finite_are_named(wrong: float) -> None:
+    positions = np.zeros((3, 3), "f4")
+    deltas = np.array([(0, 0, 0), (0, wrong, 0), (0, 0, 0)], "f4")
+    document, binary = mesh_document(
+        {"POSITION": positions, "NORMAL": deltas}, targets=[{"POSITION": 1}]
+    )
+    del document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"]
+    with pytest.raises(ModelError, match="POSITION of target 0 has entries"):
+        load_model(glb(document, binary))
+
+
+def test_a_colour_without_alpha_adds_none() -> None:
+    grey = np.full((3, 3), 0.25, "f4")
+    document, binary = mesh_document(
+        {"POSITION": np.zeros((3, 3), "f4"), "COLOR_0": grey},
+        targets=[{"COLOR_0": 1}],
+    )
+    targets = load_model(glb(document, binary)).meshes[0].primitives[0].targets
+    assert targets is not None
+    assert targets.deltas[0]["COLOR_0"].tolist() == [[0.25] * 3 + [0]] * 3

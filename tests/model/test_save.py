@@ -37,6 +37,7 @@ from moka.model import (
     save_model,
     sphere,
 )
+from tests.support.characters import Character
 
 PNG = b"\x89PNG\r\n\x1a\n not really"
 JPEG = b"\xff\xd8\xff\xe0 not really"
@@ -278,3 +279,28 @@ class TestPygltflib:
         )
         with pytest.raises(ModelError, match="pygltflib"):
             load_model(gltf)
+
+
+def test_skins_morph_targets_and_weights_come_back(tmp_path: Path) -> None:
+    character = Character(joints=5, sets=2, targets=3, morphs_colour=True)
+    model = load_model(character.glb())
+    save_model(model, tmp_path / "saved.glb")
+    again = load_model(tmp_path / "saved.glb")
+    assert again.nodes.skins == model.nodes.skins
+    assert again.nodes.weights == model.nodes.weights
+    for one, two in zip(model.skins, again.skins, strict=True):
+        assert one.name == two.name
+        np.testing.assert_array_equal(one.joints, two.joints)
+        np.testing.assert_array_equal(one.inverse_bind, two.inverse_bind)
+    first, second = model.meshes[0].primitives[0], again.meshes[0].primitives[0]
+    assert first.attributes.keys() == second.attributes.keys()
+    for name, array in first.attributes.items():
+        np.testing.assert_array_equal(array, second.attributes[name])
+    assert first.targets is not None
+    assert second.targets is not None
+    for one, two in zip(
+        first.targets.deltas, second.targets.deltas, strict=True
+    ):
+        assert one.keys() == two.keys()
+        for name, array in one.items():
+            np.testing.assert_array_equal(array, two[name])
