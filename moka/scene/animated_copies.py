@@ -156,7 +156,7 @@ def _change_material(
     own = model.own_materials[model.model.materials[number]]
     live = model.scene.live_materials
     assert live is not None  # Made with the first such model.
-    live.set(own, with_values(own, values))
+    live.set(own, with_values(live.now(own), values))
 
 
 def _change_light(

@@ -357,6 +357,20 @@ def test_lights_and_cameras_follow_pointers(scene: Scene) -> None:
     assert model.lights[0].description.colour == (1, 0.5, 0)
 
 
+def test_materials_keep_what_a_person_changed(scene: Scene) -> None:
+    file = AnimatedFile()
+    pointer = "/materials/0/pbrMetallicRoughness/baseColorFactor"
+    file.channel(pointer, [0, 1], [(0.0, 0, 0, 1), (1.0, 0.5, 0, 1)])
+    model = scene.add(load_model(file.glb()))
+    (own,) = model.own_materials.values()
+    scene.edit_material(own, roughness_factor=0.25)
+    model.animations.pose(0, 0.5)
+    scene.update()
+    now = scene.material_now(own)
+    assert now.base_colour_factor == (0.5, 0.25, 0, 1)
+    assert now.roughness_factor == 0.25
+
+
 @pytest.mark.parametrize("name", ["Run", 2, -1, "2"])
 def test_an_unknown_animation_is_told_with_what_there_is(
     model: SceneModel, name: str | int
