@@ -22,7 +22,7 @@ STARTED = time.perf_counter()
 _COMMANDS = {
     "render": "Render one picture of a glTF model, or of the built-in scene.",
     "view": "Open a model in a window, to turn it around and to look into it.",
-    "info": "Say what a glTF file holds and what of it moka does not draw.",
+    "info": "Say what a glTF file holds, and what of it a picture needs.",
     "validate": "Check a glTF file against the rules of the specification.",
     "compare": "Compare a picture with a reference: FLIP, PSNR and RMSE.",
     "survey": "Make a blind survey of pictures, and analyse its answers.",

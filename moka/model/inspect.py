@@ -4,6 +4,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from moka.commands.descriptors import Topology
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError
@@ -52,7 +54,20 @@ def describe(model: Model) -> dict[str, Any]:
             for name, roots in zip(model.scene_names, model.scenes, strict=True)
         ],
         "default_scene": model.default_scene,
-        "nodes": len(model.nodes),
+        "variants": list(model.variants),
+        "nodes": int(np.count_nonzero(model.nodes.source >= 0)),
+        "instances": int(np.count_nonzero(model.nodes.source < 0)),
+        "hidden_nodes": len(model.nodes.hidden),
+        "levels_of_detail": {
+            "nodes": 0
+            if model.nodes.levels is None
+            else len(model.nodes.levels.node),
+            "materials": sum(
+                1 + len(material.coarser)
+                for material in model.materials
+                if material.coarser
+            ),
+        },
         "meshes": len(model.meshes),
         "primitives": len(primitives),
         "scene": _scene(model),
@@ -67,6 +82,7 @@ def describe(model: Model) -> dict[str, Any]:
         "lights": [_light(light) for light in model.lights],
         "animations": [_animation(each) for each in model.animations],
         "extensions": list(model.extensions),
+        "required_extensions": list(model.required_extensions),
         "unsupported_extensions": list(model.unsupported_extensions),
         "omitted": dict(model.omitted),
         "memory": {
@@ -84,7 +100,7 @@ def format_description(description: dict[str, Any]) -> str:
         description["path"] or description["name"] or "model in memory",
         f"  scenes      {len(description['scenes'])}, default "
         f"{description['default_scene']}",
-        f"  nodes       {description['nodes']}",
+        f"  nodes       {_nodes_text(description)}",
         f"  meshes      {description['meshes']} of "
         f"{description['primitives']} primitives",
         f"  drawn       {scene['instances']} instances, "
@@ -96,6 +112,8 @@ def format_description(description: dict[str, Any]) -> str:
             for corner in scene["bounds"]
         )
         lines.append(f"  bounds      ({least}) to ({greatest}) m")
+    if description["variants"]:
+        lines.append(f"  variants    {', '.join(description['variants'])}")
     skins, targets = description["skins"], description["morph_targets"]
     if skins:
         joints = sum(skin["joints"] for skin in skins)
@@ -117,6 +135,9 @@ def format_description(description: dict[str, Any]) -> str:
         f"{_size(memory['textures'])}",
         f"  extensions  {', '.join(description['extensions']) or 'none'}",
     ]
+    if description["required_extensions"]:
+        required = ", ".join(description["required_extensions"])
+        lines.append(f"  required    {required}")
     unsupported = description["unsupported_extensions"]
     if unsupported:
         lines.append(f"  unsupported {', '.join(unsupported)}")
@@ -125,6 +146,18 @@ def format_description(description: dict[str, Any]) -> str:
         counts = (f"{count} {name}" for name, count in omitted.items())
         lines.append(f"  not drawn   {', '.join(counts)}")
     return "\n".join(lines)
+
+
+def _nodes_text(description: dict[str, Any]) -> str:
+    levels = description["levels_of_detail"]
+    more = (
+        (description["instances"], "instances of their meshes"),
+        (description["hidden_nodes"], "hidden"),
+        (levels["nodes"], "levels of detail"),
+        (levels["materials"], "levels of materials"),
+    )
+    words = [f"{count} {what}" for count, what in more if count]
+    return ", ".join([str(description["nodes"]), *words])
 
 
 def _scene(model: Model) -> dict[str, Any]:
@@ -290,6 +323,8 @@ def _texture_line(texture: dict[str, Any]) -> str:
     name = texture["image"].rpartition(": ")[2]
     if texture["file"] is not None:
         name = Path(texture["file"]).name
+    if texture["texture_bytes"] is not None:
+        count += f" ({_size(texture['texture_bytes'])} on the GPU)"
     return f"{name}: {size}, {count}, {', '.join(texture['uses'])}"
 
 

@@ -61,6 +61,7 @@ def load_model(source: ModelSource, *, scene: int | str | None = None) -> Model:
         scene_names=[scene.name for scene in document.scenes] or [""],
         extensions=tuple(sorted(set(document.extensions_used))),
         unsupported_extensions=unsupported_extensions(opened),
+        required_extensions=tuple(sorted(set(document.extensions_required))),
         omitted=_omitted(opened, still),
         animations=animations,
         rest_pose=rest_pose,

@@ -31,6 +31,7 @@ class Model(Struct, eq=False):
     ``scenes`` are lists of rows of root nodes in ``nodes``; a file without
     scenes has one of all its roots. ``path`` is None for a model that came
     from memory. ``extensions`` are those that the file uses,
+    ``required_extensions`` those without which it cannot be drawn,
     ``unsupported_extensions`` the optional ones among them that moka leaves
     out, ``omitted`` counts other things that it does not draw, by name.
     ``skins`` are what ``nodes.skins`` number. ``rest_pose`` is where nodes
@@ -50,6 +51,7 @@ class Model(Struct, eq=False):
     path: Path | None = None
     extensions: tuple[str, ...] = ()
     unsupported_extensions: tuple[str, ...] = ()
+    required_extensions: tuple[str, ...] = ()
     omitted: dict[str, int] = {}
     animations: "list[Animation]" = []
     rest_pose: "RestPose | None" = None
