@@ -46,11 +46,15 @@ def cube_size(map_height: int, *, half: bool = False) -> int:
 def upload_map(device: GraphicsDevice, pixels: NDArray[np.float32]) -> Handle:
     """A texture of an equirectangular map (H, W, 3)."""
     height, width = pixels.shape[:2]
+    # Four floats are one load, three are not: the sky is drawn in two thirds
+    # of the time here.
+    texels = np.ones((height, width, 4), np.float32)
+    texels[:, :, :3] = pixels
     return device.create_texture(
         TextureDescriptor(
-            PixelFormat.RGB32F, width, height, label="environment map"
+            PixelFormat.RGBA32F, width, height, label="environment map"
         ),
-        [pixels],
+        [texels],
     )
 
 

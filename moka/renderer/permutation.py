@@ -89,9 +89,10 @@ class LightingDescription(Struct, frozen=True):
     With ``harmonics`` irradiance comes from nine coefficients, not a cube.
     ``light_capacity`` is 0 without punctual lights, else the power of two
     that holds them; ``positional`` tells whether some are anywhere but in
-    infinity. ``ibl`` is how the environment lights. What the target
-    wants stands here too: ``float_target``, ``logarithmic_depth``, and the
-    groups of ``values`` that are drawn in the place of radiance, which
+    infinity, ``turned`` whether the environment has a rotation. ``ibl`` is
+    how the environment lights. What the target wants stands here too:
+    ``float_target``, ``logarithmic_depth``, and the groups of ``values``
+    that are drawn in the place of radiance, which
     :mod:`moka.renderer.surface_values` names.
     """
 
@@ -105,6 +106,7 @@ class LightingDescription(Struct, frozen=True):
     ibl: str = "split-sum"
     logarithmic_depth: bool = False
     positional: bool = True
+    turned: bool = True
     values: tuple[str, ...] = ()
 
     def defines(self, features: Feature) -> dict[str, int]:
@@ -129,6 +131,8 @@ class LightingDescription(Struct, frozen=True):
         defines[f"MOKA_DIFFUSE_{_macro(self.diffuse)}"] = 1
         if self.environment:
             defines["MOKA_ENVIRONMENT"] = 1
+            if self.turned:
+                defines["MOKA_TURNED_ENVIRONMENT"] = 1
             if self.ibl != "split-sum":
                 defines[f"MOKA_IBL_{_macro(self.ibl)}"] = 1
             if Feature.DIFFUSE in features:

@@ -386,6 +386,7 @@ class Renderer:
             else settings.ibl,
             logarithmic_depth,
             positional,
+            scene.environment_rotation != 0,
         )
         key = (self._materials.key, lighting)
         if self._prepared is not None and self._prepared_key == key:

@@ -1,9 +1,9 @@
 """The map that is seen behind a scene."""
 
-from moka.commands.descriptors import PixelFormat, TextureDescriptor
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
+from moka.lighting.radiance_cube import upload_map
 
 __all__ = ["SkyMap"]
 
@@ -22,13 +22,7 @@ class SkyMap:
     def without_suns(self, environment: Environment) -> Handle:
         """The texture of its pixels, which stays until :meth:`forget`."""
         if self._texture is None:
-            height, width, _ = environment.pixels.shape
-            self._texture = self._device.create_texture(
-                TextureDescriptor(
-                    PixelFormat.RGB32F, width, height, label="sky map"
-                ),
-                [environment.pixels],
-            )
+            self._texture = upload_map(self._device, environment.pixels)
         return self._texture
 
     def forget(self) -> None:

@@ -131,6 +131,15 @@ vec3 dominant_direction(vec3 n, vec3 r, float roughness) {
     return mix(r, n, roughness * roughness * roughness);
 }
 
+// Most environments are not turned, and that is then left out.
+vec3 into_environment(vec3 direction) {
+#ifdef MOKA_TURNED_ENVIRONMENT
+    return turn_into_environment(direction, environment_turn);
+#else
+    return direction;
+#endif
+}
+
 // Split sum (Karis 2013): prefiltered radiance times the directional albedo
 // of the lobe; the diffuse base gets what the interface lets through.
 vec3 environment_light(Surface surface) {
@@ -141,7 +150,7 @@ vec3 environment_light(Surface surface) {
     vec3 seen = dominant_direction(surface.normal, r, surface.roughness);
     vec3 light = specular * textureLod(
         specular_cube,
-        turn_into_environment(seen, environment_turn),
+        into_environment(seen),
         specular_level(surface.roughness)).rgb;
     float n_dot_v = clamp_n_dot_v(dot(surface.normal, surface.view));
 #ifdef MOKA_IBL_FILTERED
@@ -156,7 +165,7 @@ vec3 environment_light(Surface surface) {
     vec3 diffuse = base_share(surface, n_dot_v)
         * diffuse_albedo(n_dot_v, surface.diffuse_colour, surface.roughness);
     light += diffuse * environment_irradiance(
-        turn_into_environment(surface.normal, environment_turn));
+        into_environment(surface.normal));
 #endif
     return light * (surface.occlusion * environment_intensity);
 }
