@@ -89,6 +89,9 @@ class LightingProbe:
         diffuse: str = "lambert",
         multiscatter: bool = False,
         rotation: float = 0.0,
+        ibl: str = "split-sum",
+        ibl_samples: int = 16,
+        reflections: str = "full",
     ) -> None:
         self._device = device
         self._passes = FullscreenPasses(device)
@@ -101,6 +104,8 @@ class LightingProbe:
             irradiance=True,
             suns=suns,
             irradiance_as=irradiance,
+            ibl=ibl,
+            reflections=reflections,
         )
         scene = Scene()
         scene.environment = environment
@@ -115,12 +120,14 @@ class LightingProbe:
             multiscatter,
             float_target=True,
             harmonics=sources.harmonics is not None,
+            ibl=ibl,
         )
         frame = {
             "environment_turn": (math.cos(rotation), math.sin(rotation)),
             "environment_intensity": 1.0,
             "specular_levels": sources.maps.specular_levels - 1,
             "light_count": len(lights),
+            "sample_range": (0, ibl_samples, 0, 0),
         }
         if sources.harmonics is not None:
             frame["irradiance_harmonics"] = sources.harmonics
@@ -137,6 +144,7 @@ class LightingProbe:
             for name, handle, sampler in (
                 ("specular_cube", sources.maps.specular, CUBE_SAMPLER),
                 ("irradiance_cube", sources.maps.irradiance, CUBE_SAMPLER),
+                ("radiance_cube", sources.maps.radiance, CUBE_SAMPLER),
                 ("brdf_table", sources.table(brdf), TABLE_SAMPLER),
             )
             if handle is not None
