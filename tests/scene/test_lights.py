@@ -98,7 +98,7 @@ def test_absurd_lights_stay_finite() -> None:
 def test_rows_are_four_vec4_in_std140() -> None:
     assert LIGHT.itemsize == 64
     offsets = [LIGHT.fields[name][1] for name in LIGHT.names]
-    assert offsets == [0, 12, 16, 28, 32, 44, 48, 52, 56]
+    assert offsets == [0, 12, 16, 28, 32, 44, 48, 52, 56, 60]
 
 
 def test_infinite_range_and_wide_cones_do_nothing() -> None:
