@@ -145,8 +145,9 @@ class TextureKind(Enum):
 class TextureDescriptor(Struct, frozen=True):
     """A texture of ``levels`` mip levels (0 means the whole chain).
 
-    With ``samples`` > 1 it has one level and is only written by draws;
-    shaders read it as ``sampler2DMS``.
+    A buffer texture has one level and one row of ``width`` texels. With
+    ``samples`` > 1 it has one level and is only written by draws; shaders
+    read it as ``sampler2DMS``.
     """
 
     format: PixelFormat

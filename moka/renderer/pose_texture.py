@@ -16,14 +16,10 @@ from numpy.typing import NDArray
 
 from moka.commands.command_list import CommandList
 from moka.commands.descriptors import (
-    Filter,
-    MipmapMode,
     PixelFormat,
-    SamplerDescriptor,
     TextureBinding,
     TextureDescriptor,
     TextureKind,
-    Wrap,
 )
 from moka.commands.sort_key import SortKey
 from moka.core.errors import ModelError
@@ -37,15 +33,6 @@ from moka.scene.morph_poses import MorphGroup
 from moka.scene.poses import Poses
 
 __all__ = ["PoseTexture"]
-
-# Texels are read one by one.
-_TEXELS = SamplerDescriptor(
-    Wrap.CLAMP_TO_EDGE,
-    Wrap.CLAMP_TO_EDGE,
-    Filter.NEAREST,
-    Filter.NEAREST,
-    MipmapMode.NONE,
-)
 
 
 class PoseTexture:
@@ -105,11 +92,11 @@ class PoseTexture:
     @property
     def bindings(self) -> tuple[TextureBinding, ...]:
         """The textures as the shader names them."""
-        poses = TextureBinding("poses", self.texture, _TEXELS)
+        poses = TextureBinding("poses", self.texture)
         if self._deltas is None:
             return (poses,)
         texture = self._deltas.texture
-        return (poses, TextureBinding("morph_deltas", texture, _TEXELS))
+        return (poses, TextureBinding("morph_deltas", texture))
 
     def destroy(self) -> None:
         """Free the textures."""

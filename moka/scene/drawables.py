@@ -131,9 +131,13 @@ class ModelLayout:
         self.skin = np.where(follows, skin_of_node[self.node], -1)
         loose = follows & (self.skin < 0)
         for position in np.unique(self.primitive[loose]).tolist():
-            alike = loose & (self.primitive == position)
-            self.primitive[alike] = len(self.primitives)
-            self.primitives.append(self.primitives[position].as_rigid())
+            rigid = self.primitives[position].as_rigid()
+            alike = self.primitive == position
+            if loose[alike].all():
+                self.primitives[position] = rigid
+            else:
+                self.primitive[alike & loose] = len(self.primitives)
+                self.primitives.append(rigid)
 
 
 # What a row of Drawables has.

@@ -1,6 +1,7 @@
 """What of a scene moves within itself: skins, morph targets and their boxes.
 
-Made only for scenes that have some, see :class:`moka.scene.drawables`.
+Made only for scenes that have some, see
+:class:`moka.scene.drawables.Drawables`.
 """
 
 from collections.abc import Sequence
@@ -118,7 +119,9 @@ class Poses:
     def only(self, kept: NDArray[np.bool_], drawables: "Drawables") -> "Poses":
         """Those of the draws that are ``kept`` (D,), now ``drawables``."""
         models, node, model_skin = self._given
-        return Poses(drawables, models, node[kept], model_skin[kept])
+        made = Poses(drawables, models, node[kept], model_skin[kept])
+        made._rest_bounds = self._rest_bounds[kept]
+        return made
 
     def place(self, world: Array) -> None:
         """Put skinned draws' matrices (D, 3, 4) at their skins' anchors."""

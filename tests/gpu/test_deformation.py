@@ -173,6 +173,18 @@ def test_meshes_share_buffers_textures_and_a_skeleton(stage: Stage) -> None:
         placed.remove()
 
 
+def test_joints_without_a_skin_leave_a_mesh_rigid(stage: Stage) -> None:
+    character = Character(joints=3, targets=3, vertices=80, seed=3)
+    file = GltfFile()
+    character.add_to(file)
+    del file.document["nodes"][-1]["skin"]
+    del file.document["nodes"][-1]["translation"]
+    stage.scene.add(load_model(file.glb()))
+    character.sets = 0
+    check(stage, character)
+    assert len(stage.scene.drawables.primitives) == 1
+
+
 def test_copies_have_poses_of_their_own(stage: Stage) -> None:
     character = Character(joints=4, targets=3, seed=7)
     model = load_model(character.glb())
