@@ -5,6 +5,7 @@
 
 #include "include/material.glsl"
 #include "include/shading_normal.glsl"
+#include "include/bumps.glsl"
 #include "include/lighting.glsl"
 #include "include/logarithmic_depth.glsl"
 
@@ -29,6 +30,9 @@ void main() {
 #endif
 #else
     vec3 packed_values = occlusion_roughness_metalness(row);
+#ifdef MOKA_NORMAL_VARIANCE
+    packed_values.y = roughness_with_bumps(packed_values.y, row);
+#endif
     vec3 view = surface_view();
     Surface surface = make_surface(
         base.rgb, packed_values.z, packed_values.y, packed_values.x,

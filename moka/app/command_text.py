@@ -70,6 +70,7 @@ def _add_settings(add: Any, settings: RenderSettings) -> None:
     add("multiscatter", "on" if settings.multiscatter else "off", "on")
     add("anisotropy", settings.anisotropy, plain.anisotropy)
     add("max-texture-size", settings.max_texture_size, None)
+    add("specular-aa", "on" if settings.specular_aa else "off", "off")
     add("cull-pixels", _number(settings.cull_pixels), "0.5")
     add("ibl", settings.ibl, plain.ibl)
     if settings.ibl == "reference":

@@ -45,6 +45,7 @@ def render(
     max_error: float | None = None,
     anisotropy: int = 1,
     max_texture_size: int | None = None,
+    specular_aa: bool = False,
     cull_pixels: float = 0.5,
     aov: str | Sequence[str] = (),
     full_textures: bool = False,
@@ -89,7 +90,9 @@ def render(
     ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
     :attr:`moka.Image.layers`, which an .exr file takes along. ``anisotropy``
     is the most samples of a texture seen at a grazing angle, 1 to 16,
-    ``max_texture_size`` the most texels along a side that it keeps. Without
+    ``max_texture_size`` the most texels along a side that it keeps.
+    ``specular_aa`` makes surfaces as rough as the bumps of normal maps that a
+    pixel averages (after Toksvig 2005). Without
     ``full_textures`` mip levels that are too fine for the picture are left
     out. With ``cache`` lighting that was preintegrated before is read from
     disk, and new one is written there; the picture is the same.
@@ -128,6 +131,7 @@ def render(
         max_error=max_error,
         anisotropy=anisotropy,
         max_texture_size=max_texture_size,
+        specular_aa=specular_aa,
         cull_pixels=cull_pixels,
         aov=aov,
         full_textures=full_textures,

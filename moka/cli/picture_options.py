@@ -187,6 +187,13 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         help="relative standard error at which --ibl reference stops",
     )
     add(
+        "--specular-aa",
+        choices=("on", "off"),
+        default="off",
+        help="surfaces as rough as the bumps of a normal map that a pixel "
+        "averages (default: off)",
+    )
+    add(
         "--anisotropy",
         metavar="N",
         type=count,
@@ -235,7 +242,7 @@ def picture_request(
         max_error=arguments.max_error,
         anisotropy=arguments.anisotropy,
         max_texture_size=arguments.max_texture_size,
-        cull_pixels=arguments.cull_pixels,
+        specular_aa=arguments.specular_aa == "on",
         float_output=float_output,
     )
     _check_lighting(arguments, settings.ibl)

@@ -6,6 +6,7 @@ levels texels are 16-bit linear values, so that eleven roundings do not add
 up; all heavy steps are NumPy calls that release the interpreter's lock.
 """
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -15,6 +16,8 @@ from numpy.typing import NDArray
 from moka.core.colour import decode_srgb, encode_srgb8
 
 __all__ = ["halve_exactly", "reduce_levels"]
+
+Finish = Callable[[NDArray[np.uint16], NDArray[Any]], None]
 
 #: Values worked on at a time, so that temporaries stay in the cache.
 _BLOCK = 1 << 16
@@ -28,7 +31,7 @@ def reduce_levels(
     *,
     srgb: bool = False,
     opaque: bool = False,
-    normalise: bool = False,
+    finish: Finish | None = None,
     finest: int = 0,
 ) -> list[NDArray[Any]]:
     """The chain of mip levels, from ``texels`` itself down to 1 x 1.
@@ -39,9 +42,9 @@ def reduce_levels(
     where a size is odd (Guthe and Heckbert, Non-Power-of-Two Mipmapping,
     NVIDIA 2005). ``srgb`` texels, of 8 bits, are averaged in linear light,
     a last channel of two or four always as it is; ``opaque`` says that it is
-    white throughout. ``normalise`` stretches the vectors of a normal map back
-    to unit length. ``finest`` is the first level wanted; those before it are
-    left out.
+    white throughout. ``finest`` is the first level wanted; those before it are
+    left out. ``finish`` is called with the 16-bit linear values of each level
+    and its codes, which it may change.
     """
     if srgb and texels.dtype != np.uint8:
         raise ValueError("sRGB-encoded texels have 8 bits")
@@ -54,10 +57,13 @@ def reduce_levels(
             linear = _decode_and_halve(texels, srgb=srgb, opaque=opaque)
         else:
             linear = _halve(_decode(texels, srgb), texels.dtype)
-        if level < finest:
+        if level < finest and finish is None:
             continue
-        encode = _encode_normals if normalise else _encode
-        levels.append(encode(linear, texels.dtype, srgb))
+        codes = _encode(linear, texels.dtype, srgb)
+        if finish is not None:
+            finish(linear, codes)
+        if level >= finest:
+            levels.append(codes)
     return levels
 
 
@@ -206,7 +212,7 @@ def _encode(
     linear: NDArray[np.uint16], dtype: np.dtype[Any], srgb: bool
 ) -> NDArray[Any]:
     if dtype == np.uint16:
-        return linear
+        return linear.copy()
     codes = np.empty(linear.shape, np.uint8)
     table = _encoding_table() if srgb else None
     step = max(1, _BLOCK // linear[0].size)
@@ -225,21 +231,3 @@ def _encode(
 def _encoding_table() -> NDArray[np.uint8]:
     """The 8-bit sRGB code of every 16-bit linear value."""
     return encode_srgb8(np.arange(65536) / 65535.0)
-
-
-def _encode_normals(
-    linear: NDArray[np.uint16], dtype: np.dtype[Any], srgb: bool
-) -> NDArray[Any]:
-    """Texels whose first three channels are unit vectors again."""
-    texels = _encode(linear, dtype, srgb).copy()
-    white = np.iinfo(dtype).max
-    scale = 65535.0 if dtype == np.uint16 else 256.0 * white
-    vectors = linear[:, :, :3] * np.float32(2.0 / scale) - np.float32(1)
-    squared = vectors**2
-    lengths = np.sqrt(squared[:, :, 0] + squared[:, :, 1] + squared[:, :, 2])
-    # Opposite normals may cancel; then the surface counts as flat.
-    vectors[lengths < 1e-3] = (0.0, 0.0, 1.0)
-    lengths[lengths < 1e-3] = 1.0
-    vectors /= lengths[:, :, np.newaxis]
-    texels[:, :, :3] = np.rint((vectors + 1) * np.float32(white / 2.0))
-    return texels

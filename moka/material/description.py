@@ -68,6 +68,8 @@ class Feature(IntFlag):
     POINTS = auto()
     # Segments as quads.
     LINES = auto()
+    # The alpha of the normal map says what its levels average.
+    NORMAL_VARIANCE = auto()
 
 
 # What a morph target adds to a vertex, in texels of four numbers: which

@@ -9,7 +9,9 @@ from copy import copy
 
 from msgspec.structs import replace
 
+from moka.commands.descriptors import MipmapMode
 from moka.core.encoded_image import EncodedImage
+from moka.core.image_header import image_media_type
 from moka.material.description import (
     Feature,
     MaterialDescription,
@@ -22,6 +24,7 @@ from moka.model.mesh import Primitive
 from moka.renderer.sampled_levels import SampledLevels, StillPicture
 from moka.renderer.texture_settings import TextureSettings
 from moka.renderer.textures import (
+    Bumps,
     Coverage,
     Graft,
     TexturePool,
@@ -94,6 +97,11 @@ class SceneMaterials:
                     morphed=primitive.morphed,
                     carries=alone.issuperset(_images(material)),
                 )
+                if settings.specular_aa and _keeps_bumps(material, description):
+                    description = replace(
+                        description,
+                        features=description.features | Feature.NORMAL_VARIANCE,
+                    )
                 known[key] = (
                     description,
                     _requests(material, description, picture, settings, images),
@@ -207,6 +215,11 @@ def _requests(
             texture,
             graft=graft,
             coverage=_coverage(material, use.slot),
+            bumps=(
+                _bumps(material, description)
+                if use.slot == "normal" and settings.specular_aa
+                else None
+            ),
             max_size=settings.max_size,
             picture=picture.number if picture else 0,
         )
@@ -227,3 +240,25 @@ def _coverage(material: Material, slot: str) -> Coverage | None:
         return Coverage()
     cutoff = material.alpha_cutoff / factor
     return Coverage(cutoff if 0 < cutoff <= 1 else None)
+
+
+def _bumps(material: Material, description: MaterialDescription) -> Bumps:
+    """Where levels of the normal map leave what they average."""
+    carried = ("roughness", "normal") in description.carriers
+    factor = material.roughness_factor if carried else None
+    return Bumps(material.normal_scale, factor)
+
+
+def _keeps_bumps(material: Material, description: MaterialDescription) -> bool:
+    """Whether the alpha of the normal map is free for what levels average.
+
+    Files of blocks bring their own levels.
+    """
+    texture = material.normal_texture
+    return (
+        texture is not None
+        and any(use.slot == "normal" for use in description.textures)
+        and all(slot != "normal" for _, slot in description.carriers)
+        and texture.sampler.mipmap is not MipmapMode.NONE
+        and image_media_type(texture.image) != "image/ktx2"
+    )

@@ -66,6 +66,8 @@ class RenderSettings(Struct, frozen=True):
     ``anisotropy`` is the most samples that a texture seen at a grazing angle
     is read with, ``max_texture_size`` how many texels a side of a texture
     keeps; larger ones are reduced, as they are to what the driver takes.
+    ``specular_aa`` makes a surface as rough as the bumps of its normal map
+    that a pixel averages.
     """
 
     exposure: float = 0.0
@@ -84,6 +86,7 @@ class RenderSettings(Struct, frozen=True):
     max_error: float | None = None
     anisotropy: int = 1
     max_texture_size: int | None = None
+    specular_aa: bool = False
     cull_pixels: float = 0.5
 
     def __post_init__(self) -> None:
@@ -131,7 +134,9 @@ class RenderSettings(Struct, frozen=True):
         """The part that is about textures."""
         from moka.renderer.texture_settings import TextureSettings
 
-        return TextureSettings(self.anisotropy, self.max_texture_size)
+        return TextureSettings(
+            self.anisotropy, self.max_texture_size, self.specular_aa
+        )
 
     @property
     def sample_budget(self) -> int:

@@ -18,11 +18,13 @@ class TextureSettings(Struct, frozen=True):
 
     ``anisotropy`` is the most samples along the longer side of a pixel's
     footprint, ``max_size`` how many texels a side may have, None for what
-    the driver takes.
+    the driver takes. ``specular_aa`` keeps of normals what their levels
+    average away.
     """
 
     anisotropy: int = 1
     max_size: int | None = None
+    specular_aa: bool = False
 
     def sampled(self, texture: Texture) -> Texture:
         """The texture with the sampler that it is read with.

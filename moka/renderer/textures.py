@@ -9,7 +9,7 @@ import os
 import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from msgspec import Struct
@@ -29,7 +29,11 @@ from moka.material.material import Texture
 from moka.renderer.sampled_levels import SampledLevels
 from moka.renderer.texture_settings import levels_beyond
 
+if TYPE_CHECKING:
+    from moka.core.mip_levels import Finish
+
 __all__ = [
+    "Bumps",
     "Coverage",
     "Graft",
     "TexturePool",
@@ -79,6 +83,17 @@ class Coverage(Struct, frozen=True):
     cutoff: float | None = None
 
 
+class Bumps(Struct, frozen=True):
+    """That levels of normals keep in their alpha what they average.
+
+    ``scale`` is the normals' scale, for ``roughness_factor`` see
+    :func:`moka.core.normal_levels.normal_filter`.
+    """
+
+    scale: float
+    roughness_factor: float | None
+
+
 class TextureRequest(Struct, frozen=True):
     """An image and how the GPU is to hold it.
 
@@ -92,6 +107,7 @@ class TextureRequest(Struct, frozen=True):
     has_levels: bool
     graft: Graft | None = None
     coverage: Coverage | None = None
+    bumps: Bumps | None = None
     max_size: int | None = None
     picture: int = 0
 
@@ -204,6 +220,10 @@ class TexturePool:
         texels, *others = (decoder.texels() for decoder in decoders)
         height, width = texels.shape[:2]
         texels = _arrange(texels, is_colour=request.is_colour)
+        alone = request.bumps is not None and request.graft is None
+        if alone and texels.shape[2] == 4:
+            # What the file has in an alpha of normals means nothing.
+            texels = np.ascontiguousarray(texels[:, :, :3])
         if request.graft is not None:
             texels = _grafted(texels, others[0], request.graft)
         pixels = (
@@ -215,6 +235,10 @@ class TexturePool:
         if opaque:
             pixels = _PADDED[pixels]
             texels = with_alpha(texels)
+        elif request.bumps is not None and texels.shape[2] == 3:
+            white = np.full_like(texels[:, :, :1], np.iinfo(texels.dtype).max)
+            texels = np.concatenate([texels, white], axis=2)
+            pixels = PixelFormat.RGBA16
         finest = levels_beyond(
             (width, height),
             self._device.info.max_texture_size,
@@ -240,9 +264,22 @@ class TexturePool:
                 texels,
                 srgb=request.is_colour,
                 opaque=opaque or (request.is_colour and not request.graft),
+                finish=_finish(request, texels),
                 finest=finest,
             )
         return levels if request.has_levels else levels[:1], pixels
+
+
+def _finish(request: TextureRequest, texels: NDArray[Any]) -> "Finish | None":
+    if request.bumps is None:
+        return None
+    from moka.core.normal_levels import normal_filter
+
+    return normal_filter(
+        texels,
+        scale=request.bumps.scale,
+        roughness_factor=request.bumps.roughness_factor,
+    )
 
 
 class _Decoder:

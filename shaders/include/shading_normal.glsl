@@ -72,11 +72,16 @@ mat3 tangent_frame(vec3 n, vec2 uv) {
     return mat3(t, side * dot(up, b) < 0.0 ? -up : up, n);
 }
 
-vec3 mapped_normal(vec3 n, MaterialsRow row) {
+vec2 normal_uv(MaterialsRow row) {
     vec2 uv = UV_OF_SET(MOKA_NORMAL_UV);
 #ifdef MOKA_NORMAL_TRANSFORM
     uv = transformed(uv, row.normal_transform);
 #endif
+    return uv;
+}
+
+vec3 mapped_normal(vec3 n, MaterialsRow row) {
+    vec2 uv = normal_uv(row);
     vec3 texel = texture(normal_texture, uv).xyz * 2.0 - 1.0;
     texel.xy *= row.normal_scale;
 #ifdef MOKA_VERTEX_TANGENT

@@ -52,6 +52,7 @@ def read_back(arguments: list[str]) -> RenderRequest:
                 ibl_samples=8,
                 anisotropy=8,
                 max_texture_size=2048,
+                specular_aa=True,
             )
         },
         {

@@ -102,27 +102,6 @@ def test_colours_are_averaged_as_light_and_alpha_as_it_is() -> None:
     assert reduce_levels(texels)[1].tolist() == [[[128, 128, 128, 128]]]
 
 
-@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
-def test_normals_keep_unit_length(dtype: type) -> None:
-    white = np.iinfo(dtype).max
-    vectors = np.random.default_rng(2).normal(size=(32, 32, 3))
-    vectors[:, :, 2] += 2.0
-    vectors /= np.linalg.norm(vectors, axis=2, keepdims=True)
-    texels = np.rint((vectors + 1.0) / 2.0 * white).astype(dtype)
-    averages = oracle(texels, srgb=False)
-    levels = reduce_levels(texels, normalise=True)
-    for level, average in zip(levels[1:], averages, strict=True):
-        expected = 2.0 * average - 1.0
-        expected /= np.linalg.norm(expected, axis=2, keepdims=True)
-        assert np.abs(level / white * 2.0 - 1.0 - expected).max() < 1.5 / 127
-
-
-def test_normals_that_cancel_become_flat() -> None:
-    texels = np.array([[[255, 128, 128], [0, 127, 127]]], np.uint8)
-    level = reduce_levels(texels, normalise=True)[1]
-    assert level.tolist() == [[[128, 128, 255]]]
-
-
 def test_srgb_of_sixteen_bits_is_refused() -> None:
     with pytest.raises(ValueError, match="8 bits"):
         reduce_levels(noise(2, 2, 3, dtype=np.uint16), srgb=True)
