@@ -137,4 +137,4 @@ def test_it_costs_a_shader_only_where_the_normals_tell(
         (description,) = materials.descriptions
         assert (Feature.NORMAL_VARIANCE in description.features) == flagged
         text = Permutation(description, plain).program().fragment.source
-        assert ("roughness_with_bumps" in text) == flagged
+        assert ("#define MOKA_NORMAL_VARIANCE" in text) == flagged
