@@ -68,3 +68,14 @@ def test_a_headless_png_pays_for_nothing_else(tmp_path: Path) -> None:
     loaded = imported(log)
     assert {"numpy", "moderngl", "PIL"} <= loaded
     assert not loaded & (WINDOW | TOOLS | WRITER | {"OpenEXR"})
+    # Nor for what the file does not have.
+    modules = {
+        "moka.model.instances",
+        "moka.model.lines",
+        "moka.model.lods",
+        "moka.model.validation",
+        "moka.model.variants",
+        "moka.scene.level_of_detail",
+    }
+    assert "moka.model.nodes" in log
+    assert not {name for name in modules if name in log}

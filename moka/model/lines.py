@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 from moka.commands.descriptors import Topology
 from moka.model.mesh import Primitive
 
-__all__ = ["LINES", "line_segments"]
-
-LINES = frozenset((Topology.LINES, Topology.LINE_LOOP, Topology.LINE_STRIP))
+__all__ = ["line_segments"]
 
 
 def line_segments(primitive: Primitive) -> NDArray[np.uint32]:

@@ -12,12 +12,13 @@ from moka.model.nodes import NodeTree, read_nodes
 from moka.model.read_materials import read_materials
 from moka.model.read_meshes import read_meshes
 from moka.model.source import GltfSource, ModelSource, open_source
-from moka.model.variants import read_variant_names
 
 if TYPE_CHECKING:
     from moka.model.animation import Animation
 
 __all__ = ["load_model"]
+
+_VARIANTS = "KHR_materials_variants"
 
 
 def load_model(source: ModelSource, *, scene: int | str | None = None) -> Model:
@@ -65,13 +66,16 @@ def load_model(source: ModelSource, *, scene: int | str | None = None) -> Model:
         omitted=_omitted(opened, still),
         animations=animations,
         rest_pose=rest_pose,
-        variants=read_variant_names(opened),
     )
     if document.skins:
         from moka.model.skins import check_skinned, read_skins
 
         model.skins = read_skins(opened, nodes)
         check_skinned(opened, nodes, meshes, model.skins)
+    if _VARIANTS in (document.extensions or ()):
+        from moka.model.variants import read_variant_names
+
+        model.variants = read_variant_names(opened)
     if document.scene is not None:
         opened.check_index(
             "scene", document.scene, "scenes", len(document.scenes)

@@ -9,6 +9,7 @@ shape (Hillis and Steele 1986, "Data Parallel Algorithms").
 from collections.abc import Iterable, Sequence
 from itertools import chain
 from operator import attrgetter
+from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct, field
@@ -16,15 +17,17 @@ from numpy.typing import NDArray
 
 from moka.core.maths import Array, compose
 from moka.model.lights import read_node_lights
-from moka.model.lods import NodeLevels, read_node_levels
 from moka.model.schema import Node, read_extension
 from moka.model.source import GltfSource
+
+if TYPE_CHECKING:
+    from moka.model.lods import NodeLevels
 
 __all__ = ["NodeTree", "ancestors", "read_nodes"]
 
 Indices = NDArray[np.int32]
 
-INSTANCING = "EXT_mesh_gpu_instancing"
+INSTANCING, LEVELS = "EXT_mesh_gpu_instancing", "MSFT_lod"
 _VISIBILITY = "KHR_node_visibility"
 
 
@@ -60,7 +63,7 @@ class NodeTree(Struct, eq=False):
     weights: dict[int, list[float]] = {}
     skins: dict[int, int] = {}
     hidden: Indices = field(default_factory=lambda: np.empty(0, np.int32))
-    levels: NodeLevels | None = None
+    levels: "NodeLevels | None" = None
 
     def __len__(self) -> int:
         return len(self.names)
@@ -141,7 +144,13 @@ def read_nodes(source: GltfSource, light_count: int) -> NodeTree:
         for index, node in enumerate(nodes)
         if node.extensions is not None
     ]
-    levels = read_node_levels(source, extended)
+    used = {name for _, node in extended for name in node.extensions or ()}
+    levels = None
+    if LEVELS in used:
+        # Few files have them: readers are imported for those.
+        from moka.model.lods import read_node_levels
+
+        levels = read_node_levels(source, extended)
     parents = _parents(source)
     if levels is not None:
         _adopt_levels(parents, levels)
@@ -168,8 +177,7 @@ def read_nodes(source: GltfSource, light_count: int) -> NodeTree:
         hidden=rows[_hidden(source, extended)],
         levels=None if levels is None else levels.at(rows),
     )
-    if any(INSTANCING in (node.extensions or ()) for _, node in extended):
-        # Few files have them: the reader is imported for those.
+    if INSTANCING in used:
         from moka.model.instances import read_instances
 
         instances = read_instances(source, extended)
@@ -202,7 +210,7 @@ def _append_instances(tree: NodeTree, owners: Indices, local: Array) -> None:
         }
 
 
-def _adopt_levels(parents: Indices, levels: NodeLevels) -> None:
+def _adopt_levels(parents: Indices, levels: "NodeLevels") -> None:
     """Put coarser levels that have no parent where the finest one is."""
     finest = levels.node[levels.level == 0][levels.group]
     above = parents[levels.node]

@@ -17,7 +17,6 @@ from moka.material.material import (
 )
 from moka.model import schema
 from moka.model.images import ImageReader, sampler_descriptor
-from moka.model.lods import read_levels
 from moka.model.schema import Vector2, Vector3, read_extension
 from moka.model.source import GltfSource
 
@@ -25,6 +24,7 @@ __all__ = ["emission_of", "read_materials"]
 
 # What vertices carry: TEXCOORD_0 and TEXCOORD_1.
 _UV_SETS = 2
+_LEVELS = "MSFT_lod"
 
 
 class _TextureTransform(msgspec.Struct, rename="camel"):
@@ -50,7 +50,18 @@ def read_materials(source: GltfSource) -> list[Material]:
         _read_material(source, images, f"materials[{index}]", material)
         for index, material in enumerate(source.document.materials)
     ]
-    # Finest levels last: the coarser ones are there then, without levels.
+    if any(
+        _LEVELS in (material.extensions or ())
+        for material in source.document.materials
+    ):
+        _add_levels(source, materials)
+    return materials
+
+
+def _add_levels(source: GltfSource, materials: list[Material]) -> None:
+    """Give finest levels of detail the coarser ones, which have none."""
+    from moka.model.lods import read_levels
+
     plain = materials.copy()
     for index, material in enumerate(source.document.materials):
         coarser, limits = read_levels(
@@ -62,7 +73,6 @@ def read_materials(source: GltfSource) -> list[Material]:
                 coarser=tuple(plain[level] for level in coarser),
                 limits=tuple(limits),
             )
-    return materials
 
 
 def emission_of(source: GltfSource, index: int) -> tuple[Vector3, float]:

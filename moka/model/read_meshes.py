@@ -21,7 +21,6 @@ from moka.model.mesh import (
     Primitive,
 )
 from moka.model.source import GltfSource
-from moka.model.variants import read_variant_materials
 
 if TYPE_CHECKING:
     from moka.model.draco import DecodedPrimitive
@@ -30,6 +29,7 @@ __all__ = ["read_meshes"]
 
 _TYPES = {2: ("VEC2",), 3: ("VEC3",), 4: ("VEC4",)}
 _UNSIGNED_INT = 5125
+_VARIANTS = "KHR_materials_variants"
 _FOLLOWING = ("JOINTS_", "WEIGHTS_")
 _PLAIN = tuple(name for name in ATTRIBUTES if name not in INFLUENCES)
 
@@ -132,7 +132,9 @@ def _read_primitive(
         )
     except ModelError as error:
         raise source.error(path, str(error)) from error
-    if primitive.extensions:
+    if _VARIANTS in (primitive.extensions or ()):
+        from moka.model.variants import read_variant_materials
+
         read.variants = read_variant_materials(
             source, primitive, path, materials
         )

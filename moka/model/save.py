@@ -17,6 +17,7 @@ from moka.model.cameras import CameraDescription, Perspective
 from moka.model.lights import LightKind, PunctualLight
 from moka.model.mesh import TOPOLOGIES, Primitive
 from moka.model.model import Model
+from moka.model.save_choices import has_choices, write_choices
 from moka.model.save_materials import MaterialWriter
 from moka.version import __version__
 
@@ -35,9 +36,10 @@ def save_model(model: Model, path: str | os.PathLike[str]) -> None:
     """Write ``model`` to ``path``: .glb, or .gltf with a .bin beside it.
 
     Geometry as float32, textures as embedded images, nodes as matrices
-    unless they move, skins, morph targets, animations, cameras, punctual
-    lights and scenes. What moka does
-    not read of a file is not written either. Raises ModelError if the
+    unless they move, instances as nodes, skins, morph targets, animations,
+    cameras, punctual lights, scenes, hidden nodes, levels of detail and
+    variants. What moka does not read of a file is not written either. Raises
+    ModelError if the
     suffix is another, the geometry was released, a texture is neither PNG
     nor JPEG or the file cannot be written.
     """
@@ -109,6 +111,8 @@ def _document(model: Model) -> "pygltflib.GLTF2":
 
         split_animated_nodes(gltf, model)
         materials.extensions |= write_animations(gltf, model, binary)
+    if has_choices(model):
+        write_choices(gltf, model, materials)
     binary.finish()
     if model.lights:
         gltf.extensions[_LIGHTS] = {

@@ -10,7 +10,6 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import Topology
-from moka.model.lines import LINES, line_segments
 from moka.model.mesh import Primitive
 
 __all__ = ["LINE_OTHER", "MADE_TANGENTS", "Vertices", "vertices_of"]
@@ -54,7 +53,12 @@ def vertices_of(primitive: Primitive, wanted: tuple[str, ...]) -> Vertices:
             primitive.topology,
             primitive.vertex_count,
         )
-    assert primitive.topology in LINES
+    return _quads(primitive, wanted)
+
+
+def _quads(primitive: Primitive, wanted: tuple[str, ...]) -> Vertices:
+    from moka.model.lines import line_segments
+
     segments = line_segments(primitive)
     if not len(segments):
         # A mesh needs vertices; this one draws nothing.

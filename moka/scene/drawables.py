@@ -20,15 +20,11 @@ from moka.model.mesh import Primitive
 from moka.model.model import Model
 from moka.scene.culling import pack_boxes
 from moka.scene.forest import Rows
-from moka.scene.level_of_detail import (
-    joined_levels,
-    material_levels,
-    node_levels,
-)
 from moka.scene.transforms import TransformTree, check_affine
 
 if TYPE_CHECKING:
     from moka.scene.animation_clips import Clips
+    from moka.scene.level_of_detail import DetailLevels
     from moka.scene.morph_weights import MorphWeights
     from moka.scene.poses import Poses
 
@@ -77,14 +73,14 @@ class ModelLayout:
         within = np.arange(draws.sum()) - np.repeat(before, draws)
         self.cameras = _pairs(model.camera_instances(scene))
         self.lights = _pairs(model.light_instances(scene))
-        node = np.repeat(nodes.astype(np.intp), draws)
-        self.primitives, self.primitive, copied, levels = material_levels(
-            self.primitives, np.repeat(first[mesh], draws) + within
-        )
-        self.node: Rows = node[copied]
-        self.levels = joined_levels(
-            [(levels, 0), (node_levels(model.nodes, self.node), 0)]
-        )
+        self.node: Rows = np.repeat(nodes.astype(np.intp), draws)
+        self.primitive: Rows = np.repeat(first[mesh], draws) + within
+        self.levels: DetailLevels | None = None
+        if model.nodes.levels is not None or any(
+            primitive.material is not None and primitive.material.coarser
+            for primitive in self.primitives
+        ):
+            self._find_levels()
         self.skin: Rows = np.full(len(self.node), -1)
         if any(primitive.influence_sets for primitive in self.primitives):
             self._find_skins()
@@ -95,6 +91,22 @@ class ModelLayout:
         self.bounds: Array = np.reshape(
             np.array(boxes, np.float64), (-1, 2, 3)
         )[self.primitive]
+
+    def _find_levels(self) -> None:
+        """Make draws of all levels of materials, and see whose they are."""
+        from moka.scene.level_of_detail import (
+            joined_levels,
+            material_levels,
+            node_levels,
+        )
+
+        self.primitives, self.primitive, copied, levels = material_levels(
+            self.primitives, self.primitive
+        )
+        self.node = self.node[copied]
+        self.levels = joined_levels(
+            [(levels, 0), (node_levels(self.model.nodes, self.node), 0)]
+        )
 
     def with_materials(self, own: Mapping[Material, Material]) -> "ModelLayout":
         """The same with other materials in place of some; itself for none.
@@ -202,13 +214,18 @@ class Drawables:
         self.local_bounds: Array = np.concatenate(
             [np.empty((0, 2, 3)), *(layout.bounds for layout in layouts)]
         )
-        self.levels = joined_levels(
-            zip(
-                (layout.levels for layout in layouts),
-                np.searchsorted(self.owner, np.arange(len(layouts))).tolist(),
-                strict=True,
+        self.levels: DetailLevels | None = None
+        if any(layout.levels is not None for layout in layouts):
+            from moka.scene.level_of_detail import joined_levels
+
+            starts = np.searchsorted(self.owner, np.arange(len(layouts)))
+            self.levels = joined_levels(
+                zip(
+                    (layout.levels for layout in layouts),
+                    starts.tolist(),
+                    strict=True,
+                )
             )
-        )
         self.points: NDArray[np.bool_] = np.array(
             [each.topology is Topology.POINTS for each in self.primitives],
             np.bool_,

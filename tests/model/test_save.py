@@ -37,7 +37,10 @@ from moka.model import (
     save_model,
     sphere,
 )
+from moka.model.validation.validate import validate
+from moka.scene.picture_needs import picture_needs
 from tests.support.characters import Character
+from tests.support.gltf_file import GltfFile
 
 PNG = b"\x89PNG\r\n\x1a\n not really"
 JPEG = b"\xff\xd8\xff\xe0 not really"
@@ -304,3 +307,67 @@ def test_skins_morph_targets_and_weights_come_back(tmp_path: Path) -> None:
         assert one.keys() == two.keys()
         for name, array in one.items():
             np.testing.assert_array_equal(array, two[name])
+
+
+def test_what_chooses_comes_back(tmp_path: Path) -> None:
+    """Hidden nodes, levels of nodes and materials, variants, instances."""
+    file = GltfFile()
+    shades = [file.unlit(number / 4, 0, 0, 1) for number in range(4)]
+    finest = file.document["materials"][shades[0]]
+    finest["extensions"]["MSFT_lod"] = {"ids": [shades[1]]}
+    finest["extras"] = {"MSFT_screencoverage": [0.5, 0.125]}
+    mappings = [
+        {"material": shades[2], "variants": [1]},
+        {"material": shades[3], "variants": [0, 2]},
+    ]
+    mesh = file.quad(
+        material=shades[0],
+        extensions={"KHR_materials_variants": {"mappings": mappings}},
+    )
+    file.document["extensions"] = {
+        "KHR_materials_variants": {
+            "variants": [{"name": "a"}, {"name": "b"}, {"name": "c"}]
+        }
+    }
+    places = file.accessor([(0, 0, 0), (1, 2, 3)])
+    file.node(
+        mesh=mesh,
+        extensions={"MSFT_lod": {"ids": [1, 2]}},
+        extras={"MSFT_screencoverage": [0.25, 0.0625, 0.0]},
+    )
+    instancing = {"attributes": {"TRANSLATION": places}}
+    file.node(mesh=mesh, extensions={"EXT_mesh_gpu_instancing": instancing})
+    file.node(mesh=mesh, extensions={"KHR_node_visibility": {"visible": False}})
+    file.node(children=[0], translation=[0, 0, 5])
+    file.document["scenes"] = [{"nodes": [3]}]
+    model = load_model(file.glb())
+    path = tmp_path / "again.glb"
+    save_model(model, path)
+    # Any reader sees the finest level alone.
+    assert not [
+        issue for issue in validate(path).issues if issue.code != "NODE_EMPTY"
+    ]
+    again = load_model(path)
+    for variant in (None, *model.variants):
+        needs = picture_needs(model, variant=variant)
+        assert needs["draws"]["other_levels"] > 0
+        assert picture_needs(again, variant=variant) == needs
+    assert again.variants == model.variants
+    levels, before = again.nodes.levels, model.nodes.levels
+    assert levels is not None
+    assert before is not None
+    assert levels.limit.tolist() == before.limit.tolist()
+    assert again.materials[0].limits == (0.5, 0.125)
+    assert again.materials[0].coarser == (again.materials[1],)
+    assert len(again.nodes.hidden) == 1
+    first = again.meshes[0].primitives[0]
+    assert {
+        number: again.materials.index(material)
+        for number, material in first.variants.items()
+    } == {0: 3, 1: 2, 2: 3}
+    nodes, _ = again.instances()
+    expected, _ = model.instances()
+    world = again.nodes.world_matrices()[nodes]
+    assert sorted(world.reshape(-1, 16).tolist()) == sorted(
+        model.nodes.world_matrices()[expected].reshape(-1, 16).tolist()
+    )
