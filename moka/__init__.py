@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from moka.core.image import Image as Image
     from moka.graphics.device import GraphicsDevice as GraphicsDevice
     from moka.lighting.environment import Environment as Environment
+    from moka.lighting.environment import Sun as Sun
     from moka.lighting.environment import load_environment as load_environment
     from moka.material.material import Material as Material
     from moka.model import Model as Model
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from moka.model.animation import AnimationTarget as AnimationTarget
     from moka.model.animation import Interpolation as Interpolation
     from moka.model.skins import Skin as Skin
+    from moka.renderer.quality import settings_of_quality as settings_of_quality
     from moka.renderer.renderer import Renderer as Renderer
     from moka.renderer.settings import RenderSettings as RenderSettings
     from moka.scene.animation_player import AnimationPlayer as AnimationPlayer
@@ -84,6 +86,7 @@ __all__ = [
     "SceneModel",
     "ShaderError",
     "Skin",
+    "Sun",
     "Transform",
     "__version__",
     "load_environment",
@@ -92,6 +95,7 @@ __all__ = [
     "render_frames",
     "run",
     "save_model",
+    "settings_of_quality",
 ]
 
 _HOMES = {
@@ -125,6 +129,7 @@ _HOMES = {
     "SceneModel": "moka.scene.scene_model",
     "ShaderError": "moka.core.errors",
     "Skin": "moka.model.skins",
+    "Sun": "moka.lighting.environment",
     "Transform": "moka.scene.transform",
     "load_environment": "moka.lighting.environment",
     "load_model": "moka.model",
@@ -132,6 +137,7 @@ _HOMES = {
     "render_frames": "moka.app.render_frames",
     "run": "moka.app.run",
     "save_model": "moka.model",
+    "settings_of_quality": "moka.renderer.quality",
 }
 
 

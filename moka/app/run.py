@@ -51,10 +51,13 @@ def run(
     ``fullscreen`` window takes from the screen. ``headless``
     needs no display and runs one frame unless ``frames`` says otherwise;
     its time advances by 1/60 s a frame and its last frame is left in
-    ``app.image``. ``settings`` are a :class:`RenderSettings`, ``backend``
-    is that of ``moka render``, ``debug`` turns GL errors into exceptions,
-    ``cache`` says whether preintegrated lighting is read from disk and,
-    at the end, written there.
+    ``app.image``. Reference lighting completes that last one: its moment is
+    drawn again, without an update, until all samples are taken.
+    ``settings`` are a :class:`RenderSettings`, as
+    :func:`moka.settings_of_quality` makes them, ``backend`` is that of
+    ``moka render``, ``debug`` turns GL errors into exceptions, ``cache`` says
+    whether preintegrated lighting is read from disk and, at the end, written
+    there.
 
     Returns the app. Whatever a callback raises ends the loop, closes window
     and device, and is raised here with its own traceback. Raises
@@ -108,6 +111,7 @@ def _run_headless(
             if not is_last:
                 device.submit(commands)
                 continue
+            commands = _completed(app, clock, commands, settings)
             reads = app.renderer.has_drawn
             if reads:
                 radiance = app.renderer.read_radiance(commands)
@@ -123,6 +127,22 @@ def _run_headless(
                     display=display.data[::-1],
                 )
             break
+
+
+def _completed(
+    app: App, clock: Clock, commands: CommandList, settings: RenderSettings
+) -> CommandList:
+    """What shows the last frame, drawn on until nothing more would come.
+
+    Bounded, for an app whose drawing moves something and begins anew.
+    """
+    for _ in range(settings.sample_budget):
+        if not app.renderer.has_drawn or app.renderer.is_complete:
+            break
+        app.device.submit(commands).wait()
+        commands = CommandList()
+        app.draw(clock.frame(0.0, paused=app.paused), commands)
+    return commands
 
 
 def _run_in_window(

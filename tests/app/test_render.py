@@ -126,6 +126,36 @@ def test_the_loop_calls_everything_in_order() -> None:
     assert app.image.pixels[6, 8].tolist() == [1, 1, 1, 1]
 
 
+def test_reference_lighting_completes_the_last_frame() -> None:
+    settings = moka.RenderSettings(
+        ibl="reference", reference_samples=64, float_output=True
+    )
+
+    class Rough(Spinner):
+        def load(self) -> None:
+            super().load()
+            self.scene.environment = moka.load_environment("sky")
+
+    app = run(Rough, headless=True, frames=2, size=(8, 8), settings=settings)
+    assert isinstance(app, Rough)
+    statistics = app.renderer.lighting_statistics
+    assert statistics["samples_per_pixel"] == 64
+    # The world goes on by frames, however often one is drawn.
+    assert app.calls.count("update") == 2
+    assert app.calls.count("draw") > 2
+
+
+def test_drawing_that_never_rests_ends_all_the_same() -> None:
+    class Restless(Spinner):
+        def draw(self, time: GameTime, commands: CommandList) -> None:
+            self.camera.transform.translate((0.01, 0.0, 0.0))
+            super().draw(time, commands)
+
+    settings = moka.RenderSettings(ibl="reference", reference_samples=8)
+    app = run(Restless, headless=True, size=(8, 8), settings=settings)
+    assert app.image is not None
+
+
 def test_an_app_can_quit_itself() -> None:
     class Quitter(Spinner):
         def update(self, time: GameTime) -> None:
