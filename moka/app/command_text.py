@@ -69,6 +69,7 @@ def _add_settings(add: Any, settings: RenderSettings) -> None:
         )
     add("multiscatter", "on" if settings.multiscatter else "off", "on")
     add("anisotropy", settings.anisotropy, plain.anisotropy)
+    add("mip-filter", settings.mip_filter, plain.mip_filter)
     add("max-texture-size", settings.max_texture_size, None)
     add("specular-aa", "on" if settings.specular_aa else "off", "off")
     add("cull-pixels", _number(settings.cull_pixels), "0.5")

@@ -44,6 +44,7 @@ def render(
     reference_samples: int | None = None,
     max_error: float | None = None,
     anisotropy: int = 1,
+    mip_filter: str | None = None,
     max_texture_size: int | None = None,
     specular_aa: bool = False,
     cull_pixels: float = 0.5,
@@ -90,9 +91,10 @@ def render(
     ``emission``, ``occlusion``, ``uv`` and ``object-id``: arrays of
     :attr:`moka.Image.layers`, which an .exr file takes along. ``anisotropy``
     is the most samples of a texture seen at a grazing angle, 1 to 16,
-    ``max_texture_size`` the most texels along a side that it keeps.
-    ``specular_aa`` makes surfaces as rough as the bumps of normal maps that a
-    pixel averages (after Toksvig 2005). Without
+    ``mip_filter`` ``linear`` or ``nearest``, whether two levels of it are
+    mixed or one is read, ``max_texture_size`` the most texels along a side
+    that it keeps. ``specular_aa`` makes surfaces as rough as the bumps of
+    normal maps that a pixel averages (after Toksvig 2005). Without
     ``full_textures`` mip levels that are too fine for the picture are left
     out. With ``cache`` lighting that was preintegrated before is read from
     disk, and new one is written there; the picture is the same.
@@ -130,6 +132,7 @@ def render(
         reference_samples=reference_samples,
         max_error=max_error,
         anisotropy=anisotropy,
+        mip_filter=mip_filter,
         max_texture_size=max_texture_size,
         specular_aa=specular_aa,
         cull_pixels=cull_pixels,

@@ -202,6 +202,12 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         "(default: 1)",
     )
     add(
+        "--mip-filter",
+        metavar="HOW",
+        help="linear, which mixes two levels of a texture, or nearest, which "
+        "reads one (default: linear)",
+    )
+    add(
         "--max-texture-size",
         metavar="N",
         type=count,
@@ -241,6 +247,7 @@ def picture_request(
         reference_samples=arguments.reference_samples,
         max_error=arguments.max_error,
         anisotropy=arguments.anisotropy,
+        mip_filter=arguments.mip_filter,
         max_texture_size=arguments.max_texture_size,
         specular_aa=arguments.specular_aa == "on",
         float_output=float_output,

@@ -23,6 +23,7 @@ TONE_MAPS = ("neutral", "aces", "agx", "reinhard", "exponential", "none")
 BRDFS = ("gltf", "karis", "blinn-phong")
 DIFFUSE_MODELS = ("lambert", "oren-nayar", "burley")
 IRRADIANCE = ("auto", "sh", "cube")
+MIP_FILTERS = ("linear", "nearest")
 REFLECTIONS = ("full", "half")
 
 # Each is a light in every pixel.
@@ -64,10 +65,11 @@ class RenderSettings(Struct, frozen=True):
     another point of each pixel.
 
     ``anisotropy`` is the most samples that a texture seen at a grazing angle
-    is read with, ``max_texture_size`` how many texels a side of a texture
-    keeps; larger ones are reduced, as they are to what the driver takes.
-    ``specular_aa`` makes a surface as rough as the bumps of its normal map
-    that a pixel averages.
+    is read with, ``mip_filter`` whether its two nearest levels are mixed
+    (``linear``) or one is read (``nearest``), ``max_texture_size`` how many
+    texels a side of a texture keeps; larger ones are reduced, as they are to
+    what the driver takes. ``specular_aa`` makes a surface as rough as the
+    bumps of its normal map that a pixel averages.
     """
 
     exposure: float = 0.0
@@ -87,6 +89,7 @@ class RenderSettings(Struct, frozen=True):
     anisotropy: int = 1
     max_texture_size: int | None = None
     specular_aa: bool = False
+    mip_filter: str = "linear"
     cull_pixels: float = 0.5
 
     def __post_init__(self) -> None:
@@ -107,6 +110,7 @@ class RenderSettings(Struct, frozen=True):
         _check_count(
             "reference samples", self.sample_budget, MOST_REFERENCE_SAMPLES
         )
+        _check("mip filter", self.mip_filter, MIP_FILTERS)
         _check_count("anisotropy", self.anisotropy, MOST_ANISOTROPY)
         if self.max_texture_size is not None:
             _check_count(
@@ -135,7 +139,10 @@ class RenderSettings(Struct, frozen=True):
         from moka.renderer.texture_settings import TextureSettings
 
         return TextureSettings(
-            self.anisotropy, self.max_texture_size, self.specular_aa
+            self.anisotropy,
+            self.max_texture_size,
+            self.specular_aa,
+            self.mip_filter,
         )
 
     @property

@@ -17,14 +17,16 @@ class TextureSettings(Struct, frozen=True):
     """Choices of :class:`moka.renderer.settings.RenderSettings`.
 
     ``anisotropy`` is the most samples along the longer side of a pixel's
-    footprint, ``max_size`` how many texels a side may have, None for what
-    the driver takes. ``specular_aa`` keeps of normals what their levels
-    average away.
+    footprint, ``mip_filter`` whether two levels are mixed (``linear``) or
+    the nearer one is read (``nearest``), ``max_size`` how many texels a side
+    may have, None for what the driver takes. ``specular_aa`` keeps of normals
+    what their levels average away.
     """
 
     anisotropy: int = 1
     max_size: int | None = None
     specular_aa: bool = False
+    mip_filter: str = "linear"
 
     def sampled(self, texture: Texture) -> Texture:
         """The texture with the sampler that it is read with.
@@ -33,14 +35,23 @@ class TextureSettings(Struct, frozen=True):
         meant to look so and stay as they are.
         """
         sampler = texture.sampler
-        if (
-            self.anisotropy <= sampler.anisotropy
-            or sampler.mipmap is not MipmapMode.LINEAR
-            or Filter.NEAREST in (sampler.minify, sampler.magnify)
+        if sampler.mipmap is not MipmapMode.LINEAR or Filter.NEAREST in (
+            sampler.minify,
+            sampler.magnify,
         ):
             return texture
-        sampler = replace(sampler, anisotropy=float(self.anisotropy))
-        return replace(texture, sampler=sampler)
+        chosen = replace(
+            sampler,
+            anisotropy=max(sampler.anisotropy, float(self.anisotropy)),
+            mipmap=(
+                MipmapMode.NEAREST
+                if self.mip_filter == "nearest"
+                else MipmapMode.LINEAR
+            ),
+        )
+        if chosen == sampler:
+            return texture
+        return replace(texture, sampler=chosen)
 
 
 def levels_beyond(
