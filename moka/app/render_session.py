@@ -108,9 +108,30 @@ class PendingImage:
 
     def wait(self) -> "Image":
         """The picture, when the GPU has made it; raises what it raised."""
+        # Imported while the GPU draws.
+        import numpy as np
+
+        from moka.core.image import Image
+
         self._session.count(self._frame)
         request = self._session.request
-        return _image(request, self._radiance, self._display, self._values)
+        pixels = shown = None
+        if self._radiance is not None:
+            assert self._radiance.data is not None
+            # What was read back has its bottom row first.
+            pixels = _over_background(
+                self._radiance.data[::-1], request.background
+            )
+        if self._display is not None:
+            assert self._display.data is not None
+            shown = np.ascontiguousarray(self._display.data[::-1])
+        return Image(
+            pixels,
+            tone_map=request.settings.tone_map,
+            exposure=request.settings.exposure,
+            display=shown,
+            layers=_layers(request, self._values),
+        )
 
 
 class RenderSession:
@@ -275,37 +296,14 @@ class RenderSession:
             self._keep_map = None
 
 
-def _image(
-    request: RenderRequest,
-    radiance: "Readback | None",
-    display: "Readback | None",
-    values: "Mapping[str, Readback] | None",
-) -> "Image":
-    """What was read back, top row first."""
-    import numpy as np
+def _layers(
+    request: RenderRequest, values: "Mapping[str, Readback] | None"
+) -> "dict[str, NDArray[Any]] | None":
+    if values is None:
+        return None
+    from moka.renderer.surface_values import unpack_values
 
-    from moka.core.image import Image
-
-    pixels = None
-    if radiance is not None:
-        assert radiance.data is not None
-        pixels = _over_background(radiance.data[::-1], request.background)
-    shown = None
-    if display is not None:
-        assert display.data is not None
-        shown = np.ascontiguousarray(display.data[::-1])
-    layers = None
-    if values is not None:
-        from moka.renderer.surface_values import unpack_values
-
-        layers = unpack_values(request.aovs, values)
-    return Image(
-        pixels,
-        tone_map=request.settings.tone_map,
-        exposure=request.settings.exposure,
-        display=shown,
-        layers=layers,
-    )
+    return unpack_values(request.aovs, values)
 
 
 def _load_scene(

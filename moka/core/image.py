@@ -13,9 +13,7 @@ from moka.core.aov import exr_layer
 from moka.core.atomic_file import image_file
 from moka.core.colour import encode_srgb8
 from moka.core.errors import ImageFileError, OptionError
-from moka.core.exr import store_exr
 from moka.core.png import encode_png
-from moka.core.tone_map import tone_map as map_tones
 
 __all__ = ["Image"]
 
@@ -118,6 +116,8 @@ class Image:
                     file = files.enter_context(image_file(path))
                     file.write_bytes(encode_png(shown))
                 elif suffix == ".exr":
+                    from moka.core.exr import store_exr
+
                     pixels = self.pixels
                     file = files.enter_context(image_file(path))
                     layers = {
@@ -152,6 +152,7 @@ class Image:
             return self._display
         if gamma is not None and not gamma > 0.0:
             raise OptionError(f"a gamma of {gamma} is not positive")
+        from moka.core.tone_map import tone_map as map_tones
 
         shown = np.empty(self._shape, np.uint8)
         for start in range(0, len(shown), _ROWS):

@@ -9,7 +9,6 @@ from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.lighting.environment_maps import CUBE_SAMPLER
-from moka.lighting.preintegration_passes import PreintegrationPasses
 
 __all__ = ["TABLE", "TABLE_SAMPLER", "make_brdf_table"]
 
@@ -29,6 +28,8 @@ def make_brdf_table(
 
     x is n.v, y is roughness, red the scale of f0, green that of f90.
     """
+    from moka.lighting.preintegration_passes import PreintegrationPasses
+
     table = device.create_texture(TABLE)
     jobs = PreintegrationPasses(device, passes)
     jobs.draw(

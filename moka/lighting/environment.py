@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from moka.core.errors import EnvironmentMapError, ImageFileError
 
 __all__ = [
+    "AUTO_SUNS",
     "BRIGHTEST",
     "Environment",
     "Sun",
@@ -31,6 +32,9 @@ __all__ = [
 ]
 
 _LOGGER = logging.getLogger(__name__)
+
+#: Suns that ``auto`` makes at most: each is a light in every pixel.
+AUTO_SUNS = 4
 
 #: Infinite radiance is mostly an overflow of half floats, of which this is
 #: the largest.

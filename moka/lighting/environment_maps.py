@@ -1,11 +1,14 @@
 """The textures that one environment is on the GPU, and how they are read."""
 
+import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 
 from moka.commands.descriptors import (
     MipmapMode,
     PixelFormat,
     SamplerDescriptor,
+    TextureDescriptor,
     Wrap,
 )
 from moka.commands.handles import Handle
@@ -17,6 +20,7 @@ __all__ = [
     "MAP_SAMPLER",
     "SOURCE_SAMPLER",
     "EnvironmentMaps",
+    "upload_map",
 ]
 
 # u wraps around, v ends at the poles.
@@ -59,7 +63,29 @@ class EnvironmentMaps(Struct):
         """Whether surfaces reflect the environment."""
         return self.specular is not None or self.importance is not None
 
+    def add_map(
+        self, device: GraphicsDevice, pixels: NDArray[np.float32]
+    ) -> None:
+        """Upload ``pixels`` (H, W, 3) as ``map``."""
+        self.map = upload_map(device, pixels)
+        self.resources.append(self.map)
+
     def destroy(self, device: GraphicsDevice) -> None:
         """Destroy all of it."""
         device.destroy(*self.resources)
         self.resources.clear()
+
+
+def upload_map(device: GraphicsDevice, pixels: NDArray[np.float32]) -> Handle:
+    """A texture of an equirectangular map (H, W, 3)."""
+    height, width = pixels.shape[:2]
+    # Four floats are one load, three are not: the sky is drawn in two thirds
+    # of the time here.
+    texels = np.ones((height, width, 4), np.float32)
+    texels[:, :, :3] = pixels
+    return device.create_texture(
+        TextureDescriptor(
+            PixelFormat.RGBA32F, width, height, label="environment map"
+        ),
+        [texels],
+    )

@@ -1,34 +1,16 @@
 """Lighting of an environment: from the cache, or made now."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
-from moka.lighting.brdf_table import make_brdf_table
 from moka.lighting.disk_cache import DiskCache
 from moka.lighting.environment_lighting import (
     EnvironmentLighting,
     LightingRequest,
 )
 from moka.lighting.lighting_cache import LightingCache
-from moka.lighting.preintegration import Preintegrator
-from moka.lighting.spherical_harmonics import (
-    irradiance_error,
-    irradiance_harmonics,
-)
-from moka.lighting.suns import SplitEnvironment, full_map, split_environment
 
 __all__ = ["LightingMaker"]
-
-# Errors of nine coefficients, relative to the mean irradiance, between which
-# ``auto`` makes a cube. Below they suffice: largest errors of coefficients
-# and of a cube are 3.1 and 1.2 % for a beach, 3.7 and 3.4 % for soft boxes,
-# 2.2 and 0.6 % for the sky, but 5.4 and 1.6 % for the studio. Above a sun is
-# in the map; of that they make 20 %, and the samples of a cube 70 to 100 %.
-_HARMONICS_SUFFICE = 0.04
-_HARMONICS_SEE_A_SUN = 0.12
 
 
 class LightingMaker:
@@ -46,7 +28,6 @@ class LightingMaker:
     ) -> None:
         self._device = device
         self._passes = passes
-        self._preintegrator = Preintegrator(device, passes)
         self._cache = LightingCache(device, cache)
         self._tables: dict[str, Handle] = {}
 
@@ -54,12 +35,18 @@ class LightingMaker:
         """What ``request`` asks for, to be destroyed by the caller."""
         lighting = self._cache.load(request)
         if lighting is None:
-            lighting = self._make(request)
+            # What is found does not import what would have made it.
+            from moka.lighting.make_lighting import make_lighting
+
+            lighting = make_lighting(self._device, self._passes, request)
             self._cache.keep(request, lighting)
         elif request.background:
-            self._preintegrator.add_map(
-                lighting.maps, full_map(request.environment, request.most_suns)
-            )
+            pixels = request.environment.pixels
+            if request.environment.suns:
+                from moka.lighting.suns import full_map
+
+                pixels = full_map(request.environment, request.most_suns)
+            lighting.maps.add_map(self._device, pixels)
         return lighting
 
     def table(self, brdf: str) -> Handle:
@@ -67,6 +54,8 @@ class LightingMaker:
         if brdf not in self._tables:
             table = self._cache.load_table(brdf)
             if table is None:
+                from moka.lighting.brdf_table import make_brdf_table
+
                 table = make_brdf_table(self._device, self._passes, brdf)
                 self._cache.keep_table(brdf, table)
             self._tables[brdf] = table
@@ -83,39 +72,3 @@ class LightingMaker:
         To be called before what has been made is destroyed.
         """
         self._cache.flush()
-
-    def _make(self, request: LightingRequest) -> EnvironmentLighting:
-        split = split_environment(
-            request.environment, request.most_suns, search=not request.sampled
-        )
-        if request.sampled:
-            maps = self._preintegrator.sampled(split.full)
-            return EnvironmentLighting(maps, split.suns)
-        harmonics = (
-            _harmonics(split, request.irradiance_as)
-            if request.irradiance
-            else None
-        )
-        maps = self._preintegrator.prepare(
-            split,
-            background=request.background,
-            specular=request.specular,
-            irradiance=request.irradiance and harmonics is None,
-            radiance=request.radiance,
-            half=request.half,
-        )
-        return EnvironmentLighting(maps, split.suns, harmonics)
-
-
-def _harmonics(
-    split: SplitEnvironment, irradiance_as: str
-) -> NDArray[np.float64] | None:
-    """Coefficients of irradiance, unless a cube is wanted or better."""
-    if irradiance_as == "cube":
-        return None
-    coefficients = irradiance_harmonics(split.base)
-    if irradiance_as == "sh":
-        return coefficients
-    error = irradiance_error(split.base, coefficients)
-    needs_cube = _HARMONICS_SUFFICE < error < _HARMONICS_SEE_A_SUN
-    return None if needs_cube else coefficients

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from moka.commands.descriptors import PixelFormat, TextureDescriptor
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
-from moka.lighting.environment_maps import EnvironmentMaps
+from moka.lighting.environment_maps import EnvironmentMaps, upload_map
 from moka.lighting.importance import importance_table
 from moka.lighting.irradiance_cube import irradiance_cube
 from moka.lighting.preintegration_passes import PreintegrationPasses
@@ -23,7 +23,6 @@ from moka.lighting.radiance_cube import (
     downsample,
     map_to_cube,
     uniform_cube,
-    upload_map,
 )
 from moka.lighting.specular_cube import prefilter, specular_level_count
 
@@ -42,17 +41,10 @@ class Preintegrator:
         self._device = device
         self._passes = passes
 
-    def add_map(
-        self, maps: EnvironmentMaps, pixels: NDArray[np.float32]
-    ) -> None:
-        """Upload ``pixels`` as the ``map`` of ``maps``."""
-        maps.map = upload_map(self._device, pixels)
-        maps.resources.append(maps.map)
-
     def sampled(self, pixels: NDArray[np.float32]) -> EnvironmentMaps:
         """A map and the table by which reference lighting samples it."""
         maps = EnvironmentMaps()
-        self.add_map(maps, pixels)
+        maps.add_map(self._device, pixels)
         table = importance_table(pixels)
         height, width, _ = table.shape
         maps.importance = self._device.create_texture(
@@ -86,7 +78,7 @@ class Preintegrator:
         reflects = specular or irradiance
         is_uniform = pixels.shape[:2] == (1, 1)
         if background or (reflects and not is_uniform):
-            self.add_map(maps, pixels)
+            maps.add_map(self._device, pixels)
         if is_uniform and reflects:
             cube = uniform_cube(self._device, pixels[0, 0])
             maps.resources.append(cube)

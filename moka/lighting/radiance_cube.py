@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import (
-    PixelFormat,
     TextureBinding,
     TextureDescriptor,
     TextureKind,
@@ -26,7 +25,6 @@ __all__ = [
     "downsample",
     "map_to_cube",
     "uniform_cube",
-    "upload_map",
 ]
 
 LARGEST_CUBE = 1024
@@ -41,21 +39,6 @@ def cube_size(map_height: int, *, half: bool = False) -> int:
     # At least two levels: a mirror image, and one for all rough surfaces.
     texels = max(map_height / (4 if half else 2), 2 * SMALLEST_SPECULAR)
     return min(LARGEST_CUBE, 1 << math.ceil(math.log2(texels)))
-
-
-def upload_map(device: GraphicsDevice, pixels: NDArray[np.float32]) -> Handle:
-    """A texture of an equirectangular map (H, W, 3)."""
-    height, width = pixels.shape[:2]
-    # Four floats are one load, three are not: the sky is drawn in two thirds
-    # of the time here.
-    texels = np.ones((height, width, 4), np.float32)
-    texels[:, :, :3] = pixels
-    return device.create_texture(
-        TextureDescriptor(
-            PixelFormat.RGBA32F, width, height, label="environment map"
-        ),
-        [texels],
-    )
 
 
 def uniform_cube(

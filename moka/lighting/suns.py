@@ -11,7 +11,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.lighting.environment import Environment, Sun
+from moka.lighting.environment import AUTO_SUNS, Environment, Sun
 from moka.lighting.equirectangular import (
     direction_to_uv,
     solid_angles,
@@ -28,9 +28,6 @@ __all__ = [
 
 Pixels = NDArray[np.float32]
 Array = NDArray[np.float64]
-
-#: Lights that ``auto`` makes at most: each costs time in every pixel.
-AUTO_SUNS = 4
 
 # The base map is cut at this many times the mean radiance. Measured against
 # exact integration, split-sum of what is left has errors of 3 %.

@@ -17,9 +17,8 @@ Sources: Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", and
 his mikktspace.c; glTF 2.0 specification, section 3.7.2.1, which names it.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.errors import ModelError
@@ -102,8 +101,7 @@ def with_tangents(
     return made
 
 
-@dataclass(slots=True)
-class _Faces:
+class _Faces(Struct, eq=False):
     """What the T triangles say of the texture.
 
     ``along_u`` (3, T) are unit directions of growing u, ``upright`` whether

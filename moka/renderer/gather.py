@@ -139,7 +139,7 @@ class DrawGatherer:
             visible,
             states,
             view,
-            float(np.median(depth)) if len(depth) else 0.0,
+            _middle(depth),
             draws,
             self._instances.take(rows),
             self._positions.take(rows, axis=1),
@@ -211,3 +211,12 @@ def _keys(rows: NDArray[np.void], pass_: int) -> NDArray[np.uint64]:
         material=material[blended],
     )
     return keys
+
+
+def _middle(values: Array) -> float:
+    """The median, or the upper of two; 0 without any.
+
+    NumPy's own imports its masked arrays, which takes 10 ms.
+    """
+    middle = len(values) // 2
+    return float(np.partition(values, middle)[middle]) if len(values) else 0.0

@@ -15,14 +15,18 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.lighting.disk_cache import DiskCache
-from moka.lighting.environment import BRIGHTEST, Environment, Sun
+from moka.lighting.environment import (
+    AUTO_SUNS,
+    BRIGHTEST,
+    Environment,
+    Sun,
+)
 from moka.lighting.environment_lighting import (
     EnvironmentLighting,
     LightingRequest,
 )
 from moka.lighting.environment_maps import EnvironmentMaps
 from moka.lighting.lighting_maker import LightingMaker
-from moka.lighting.suns import AUTO_SUNS
 from moka.renderer.permutation import lights_layout
 from moka.renderer.settings import MOST_SUNS
 from moka.renderer.view import turn_matrix

@@ -3,7 +3,7 @@
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
-from moka.lighting.radiance_cube import upload_map
+from moka.lighting.environment_maps import upload_map
 
 __all__ = ["SkyMap"]
 

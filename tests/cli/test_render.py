@@ -264,7 +264,7 @@ def test_a_failed_write_leaves_no_file_behind(
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("moka.core.image.store_exr", full)
+    monkeypatch.setattr("moka.core.exr.store_exr", full)
     png, exr = tmp_path / "out.png", tmp_path / "out.exr"
     line = fail(
         capsys,
