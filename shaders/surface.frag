@@ -11,6 +11,20 @@
 
 out vec4 radiance;
 
+#ifndef MOKA_UNLIT
+// All that comes from elsewhere.
+vec3 received_light(Surface surface) {
+    vec3 light = vec3(0.0);
+#ifdef MOKA_ENVIRONMENT
+    light += environment_light(surface);
+#endif
+#ifdef MOKA_PUNCTUAL_LIGHTS
+    light += punctual_light(surface);
+#endif
+    return light;
+}
+#endif
+
 void main() {
 #ifdef MOKA_LOGARITHMIC_DEPTH
     write_depth();
@@ -37,14 +51,17 @@ void main() {
     Surface surface = make_surface(
         base.rgb, packed_values.z, packed_values.y, packed_values.x,
         shading_normal(row), view);
-    vec3 light = vec3(0.0);
-#ifdef MOKA_ENVIRONMENT
-    light += environment_light(surface);
+    vec3 light = received_light(surface);
+#if defined(MOKA_PART_DIFFUSE) || defined(MOKA_PART_SPECULAR)
+    // What is left without a diffuse base is what the interface reflects.
+    surface.diffuse_colour = vec3(0.0);
+    vec3 specular = received_light(surface);
+#ifdef MOKA_PART_SPECULAR
+    light = specular;
+#else
+    light = max(light - specular, 0.0);
 #endif
-#ifdef MOKA_PUNCTUAL_LIGHTS
-    light += punctual_light(surface);
-#endif
-#ifdef MOKA_EMISSIVE
+#elif defined(MOKA_EMISSIVE)
     light += emission(row);
 #endif
 #endif

@@ -16,6 +16,9 @@ layout(location = MOKA_VALUES_ALBEDO_ROUGHNESS) out vec4 albedo_roughness;
 #ifdef MOKA_VALUES_EMISSION_METALNESS
 layout(location = MOKA_VALUES_EMISSION_METALNESS) out vec4 emission_metalness;
 #endif
+#ifdef MOKA_VALUES_TANGENT_LEVEL
+layout(location = MOKA_VALUES_TANGENT_LEVEL) out vec4 tangent_level;
+#endif
 #ifdef MOKA_VALUES_UV_OCCLUSION_OBJECT
 layout(location = MOKA_VALUES_UV_OCCLUSION_OBJECT) out vec4 uv_occlusion_object;
 #endif
@@ -29,6 +32,38 @@ float view_distance(vec3 point) {
     return eye.w > 0.0
         ? dot(axis, vec4(point, 1.0)) : -dot(eye.xyz, point);
 }
+
+#ifdef MOKA_VALUES_TANGENT_LEVEL
+// Where the first texture coordinate grows, as normal mapping has it.
+vec3 value_of_tangent() {
+#if defined(MOKA_VERTEX_TANGENT)
+    return direction_of(surface_tangent.xyz);
+#elif defined(MOKA_NORMAL_TEXTURE)
+    return direction_of(tangent_frame(
+        front_normal(), UV_OF_SET(MOKA_NORMAL_UV))[0]);
+#else
+    return vec3(0.0);
+#endif
+}
+
+// The level that is sampled, after OpenGL 4.6, 8.14: of the longer of the
+// two steps from pixel to pixel, in texels.
+float base_colour_level(MaterialsRow row) {
+#ifdef MOKA_BASE_COLOUR_TEXTURE
+    vec2 uv = UV_OF_SET(MOKA_BASE_COLOUR_UV);
+#ifdef MOKA_BASE_COLOUR_TRANSFORM
+    uv = transformed(uv, row.base_colour_transform);
+#endif
+    uv *= vec2(textureSize(base_colour_texture, 0));
+    vec2 across = dFdx(uv);
+    vec2 up = dFdy(uv);
+    float squared = max(dot(across, across), dot(up, up));
+    return 0.5 * log2(max(squared, 1.0));
+#else
+    return 0.0;
+#endif
+}
+#endif
 
 void main() {
 #ifdef MOKA_LOGARITHMIC_DEPTH
@@ -48,6 +83,9 @@ void main() {
 #endif
 #ifdef MOKA_VALUES_EMISSION_METALNESS
     emission_metalness = vec4(emission(row), packed_values.z);
+#endif
+#ifdef MOKA_VALUES_TANGENT_LEVEL
+    tangent_level = vec4(value_of_tangent(), base_colour_level(row));
 #endif
 #ifdef MOKA_VALUES_UV_OCCLUSION_OBJECT
 #if defined(MOKA_UV_0)

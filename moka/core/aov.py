@@ -35,6 +35,8 @@ AOVS = {
     "metallic": Aov("", "metalness, 0 to 1"),
     "emission": Aov("RGB", "emitted radiance, linear Rec.709"),
     "occlusion": Aov("", "ambient visibility, 1 in the open"),
+    "tangent": Aov("XYZ", "direction of the first texture coordinate"),
+    "mip-level": Aov("", "level of the base colour texture that is sampled"),
     "uv": Aov("UV", "the first texture coordinates of the vertices"),
     "object-id": Aov(
         "",

@@ -90,9 +90,10 @@ class LightingDescription(Struct, frozen=True):
     ``light_capacity`` is 0 without punctual lights, else the power of two
     that holds them; ``positional`` tells whether some are anywhere but in
     infinity, ``turned`` whether the environment has a rotation. ``ibl`` is
-    how the environment lights. What the target wants stands here too:
-    ``float_target``, ``logarithmic_depth``, and the groups of ``values``
-    that are drawn in the place of radiance, which
+    how the environment lights, ``part`` which of the light is drawn:
+    ``all``, ``diffuse`` or ``specular``. What the target wants stands here
+    too: ``float_target``, ``logarithmic_depth``, and the groups of
+    ``values`` that are drawn in the place of radiance, which
     :mod:`moka.renderer.surface_values` names.
     """
 
@@ -107,6 +108,7 @@ class LightingDescription(Struct, frozen=True):
     logarithmic_depth: bool = False
     positional: bool = True
     turned: bool = True
+    part: str = "all"
     values: tuple[str, ...] = ()
 
     def defines(self, features: Feature) -> dict[str, int]:
@@ -143,6 +145,8 @@ class LightingDescription(Struct, frozen=True):
             defines["MOKA_PUNCTUAL_LIGHTS"] = self.light_capacity
             if self.positional:
                 defines["MOKA_POSITIONAL_LIGHTS"] = 1
+        if self.part != "all":
+            defines[f"MOKA_PART_{_macro(self.part)}"] = 1
         if self.multiscatter:
             defines["MOKA_MULTISCATTER"] = 1
         if self.needs_table:

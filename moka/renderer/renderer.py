@@ -54,6 +54,7 @@ from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from moka.renderer.debug_view import DebugPass
     from moka.renderer.pose_texture import PoseTexture
     from moka.renderer.surface_values import SurfaceValues, ValueTargets
 
@@ -63,7 +64,8 @@ PASS_SCENE = 1
 PASS_ACCUMULATE = 2
 PASS_DISPLAY = 3
 PASS_VALUES = 4
-PASS_READ = 5
+PASS_DEBUG = 5
+PASS_READ = 6
 
 # Lines are as wide as this part of the picture's height, points are squares
 # of the other one; a pixel at least.
@@ -81,6 +83,9 @@ class Renderer:
     ``cache`` is where preintegrated lighting is looked for, and written to
     by :meth:`keep_lighting`. ``materials`` is a pool of this device in which
     images may be decoding already; the renderer closes it.
+
+    With ``shows_stops`` the display has a colour for each stop of luminance
+    in the place of what the picture looks like.
     """
 
     def __init__(
@@ -98,6 +103,7 @@ class Renderer:
         self.size = size
         self.settings = settings or RenderSettings()
         self.statistics = statistics or Statistics()
+        self.shows_stops = False
         self._to_window = to_window
         self._passes = passes = FullscreenPasses(device)
         self._progressive = Progressive(device, passes)
@@ -121,6 +127,7 @@ class Renderer:
         self._gatherer: DrawGatherer
         self._poses: PoseTexture | None = None
         self._values: SurfaceValues | None = None
+        self._debug: DebugPass | None = None
 
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
@@ -265,6 +272,36 @@ class Renderer:
             self._poses,
         )
 
+    def draw_debug_view(
+        self, scene: Scene, camera: Camera, name: str, commands: CommandList
+    ) -> None:
+        """Record a frame that shows what surfaces are, as colours.
+
+        ``name`` is one of :data:`moka.renderer.debug_view.DEBUG_VIEWS`. It
+        goes where :meth:`draw` would have the picture.
+        """
+        from moka.renderer.debug_view import DEBUG_VIEWS, DebugPass
+
+        view = DEBUG_VIEWS[name]
+        values = self.draw_values(scene, camera, (view.value,), commands)
+        if self._debug is None:
+            self._debug = DebugPass(self.device, self._passes)
+        bounds = scene.bounds()
+        distance = 1.0
+        if bounds is not None:
+            centre = np.mean(bounds, axis=0)
+            distance = float(np.linalg.norm(camera.position - centre)) or 1.0
+        target = None if self._to_window else self._update_targets().display
+        self._debug.draw(
+            view,
+            values,
+            distance,
+            commands,
+            SortKey(PASS_DEBUG),
+            target,
+            self.size,
+        )
+
     def read_values(
         self,
         scene: Scene,
@@ -387,6 +424,7 @@ class Renderer:
             logarithmic_depth,
             positional,
             scene.environment_rotation != 0,
+            settings.light_part,
         )
         key = (self._materials.key, lighting)
         if self._prepared is not None and self._prepared_key == key:
@@ -565,7 +603,7 @@ class Renderer:
             SortKey(PASS_DISPLAY),
             targets,
             self._sky_behind,
-            tone_map=self.settings.tone_map,
+            tone_map="stops" if self.shows_stops else self.settings.tone_map,
             exposure=self.settings.exposure,
             background=None if isinstance(colour, str) else colour,
             window=self.size if self._to_window else None,

@@ -28,6 +28,7 @@ REFLECTIONS = ("full", "half")
 
 # Each is a light in every pixel.
 MOST_SUNS = 64
+LIGHT_PARTS = ("all", "diffuse", "specular")
 IBL_MODES = ("split-sum", "filtered", "reference")
 
 DEFAULT_IBL_SAMPLES = 16
@@ -86,6 +87,7 @@ class RenderSettings(Struct, frozen=True):
     ibl_samples: int = DEFAULT_IBL_SAMPLES
     reference_samples: int | None = None
     max_error: float | None = None
+    light_part: str = "all"
     anisotropy: int = 1
     max_texture_size: int | None = None
     specular_aa: bool = False
@@ -106,6 +108,7 @@ class RenderSettings(Struct, frozen=True):
                 f"suns: {self.suns!r} is neither auto, off nor 0 to {MOST_SUNS}"
             )
         _check("lighting mode", self.ibl, IBL_MODES)
+        _check("part of the light", self.light_part, LIGHT_PARTS)
         _check_count("filtered samples", self.ibl_samples, MOST_IBL_SAMPLES)
         _check_count(
             "reference samples", self.sample_budget, MOST_REFERENCE_SAMPLES

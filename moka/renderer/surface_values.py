@@ -39,8 +39,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "GROUPS",
+    "OBJECTS",
     "SurfaceValues",
     "ValueTargets",
+    "group_of",
     "groups_of",
     "unpack_values",
 ]
@@ -55,7 +57,16 @@ GROUPS: Mapping[str, Mapping[str, slice]] = {
         "occlusion": slice(2, 3),
         "object-id": slice(3, 4),
     },
+    "tangent_level": {"tangent": slice(0, 3), "mip-level": slice(3, 4)},
 }
+
+#: The target whose last value is the object's number, 0 where nothing is.
+OBJECTS = "uv_occlusion_object"
+
+
+def group_of(name: str) -> str:
+    """The target that holds a value."""
+    return next(group for group, held in GROUPS.items() if name in held)
 
 
 def groups_of(names: Iterable[str]) -> tuple[str, ...]:
@@ -96,6 +107,7 @@ class ValueTargets:
                 tuple(map(Attachment, textures)), Attachment(depth)
             )
         )
+        self.textures = dict(zip(groups, textures, strict=True))
         self._resources: tuple[Handle, ...] = (
             self.framebuffer,
             depth,
@@ -258,11 +270,11 @@ def unpack_values(
     Arrays (H, W) or (H, W, C) of the types that :data:`moka.core.aov.AOVS`
     states, top row first.
     """
-    objects = _channels(read, "uv_occlusion_object")[:, :, 3]
+    objects = _channels(read, OBJECTS)[:, :, 3]
     values: dict[str, NDArray[Any]] = {}
     for name in names:
         aov = AOVS[name]
-        group = next(g for g, held in GROUPS.items() if name in held)
+        group = group_of(name)
         value = _channels(read, group)[:, :, GROUPS[group][name]]
         value = np.ascontiguousarray(value.astype(aov.dtype, copy=False))
         if aov.nothing:

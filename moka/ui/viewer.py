@@ -52,13 +52,14 @@ from moka.ui.panels.panel import Panel
 from moka.ui.panels.picture import PicturePanel
 from moka.ui.panels.scene_tree import SceneTreePanel
 from moka.ui.panels.timeline import draw_timeline, toggle_playing
+from moka.ui.panels.view import ViewPanel
 from moka.ui.picking import begin_pick, finish_pick
 from moka.ui.selection import draw_box
 
 __all__ = ["Viewer"]
 
 # Behind every pass of the renderer.
-PASS_INTERFACE = 6
+PASS_INTERFACE = 7
 
 # Panels follow the pointer a frame later, and sizes of text one more.
 _FRAMES_TO_SETTLE = 3
@@ -82,8 +83,9 @@ class Viewer(App):
     """Shows what ``request`` describes, and lets a person change it all.
 
     ``controls`` move the camera; ``model`` is what is open, None before it
-    has been read; ``selection`` the row of a node of it. ``error`` is the
-    last thing that went wrong, for a person to read.
+    has been read; ``selection`` the row of a node of it. ``debug_view`` is
+    a name of :data:`moka.renderer.debug_view.DEBUG_VIEWS` or None. ``error``
+    is the last thing that went wrong, for a person to read.
     """
 
     continuous = False
@@ -97,6 +99,7 @@ class Viewer(App):
         self.environment_source: Any = self.begun.environment
         self.selection: int | None = None
         self.error: str | None = None
+        self.debug_view: str | None = None
         self.shows_panels = True
         self.shows_help = False
         self.panels: list[Panel] = [
@@ -104,6 +107,7 @@ class Viewer(App):
             PicturePanel(),
             EnvironmentPanel(),
             LightingPanel(),
+            ViewPanel(),
             SceneTreePanel(),
             InspectorPanel(),
         ]
@@ -173,11 +177,11 @@ class Viewer(App):
         pixels = self.window.framebuffer_size if self.window else self.size
         self.renderer.size = self._picture_size(size, pixels)
         try:
-            self.renderer.draw(self.scene, self.camera, commands)
+            self._draw_scene(commands)
         except MokaError as error:
             self.error = str(error)
             self._remove_model()
-            self.renderer.draw(self.scene, self.camera, commands)
+            self._draw_scene(commands)
         self._read_picture(commands)
         self._pick(commands, size)
         with self.interface.frame(size, time.delta) as imgui:
@@ -189,6 +193,14 @@ class Viewer(App):
         self._watcher.close()
         self._work.close()
         self.interface.close()
+
+    def _draw_scene(self, commands: CommandList) -> None:
+        if self.debug_view is None:
+            self.renderer.draw(self.scene, self.camera, commands)
+        else:
+            self.renderer.draw_debug_view(
+                self.scene, self.camera, self.debug_view, commands
+            )
 
     # What a person may want of it.
 
@@ -543,7 +555,10 @@ class Viewer(App):
 
     def _read_picture(self, commands: CommandList) -> None:
         path, self._wants_picture = self._wants_picture, None
-        if path is None or not self.renderer.is_complete:
+        if path is None:
+            return
+        if self.debug_view is not None or not self.renderer.is_complete:
+            # A picture is one of light, and of all of it.
             self._wants_picture = path
             return
         read = self.renderer.read_radiance(commands)

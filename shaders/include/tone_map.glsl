@@ -2,7 +2,8 @@
 //
 // MOKA_TONE_MAP_NEUTRAL, _ACES, _AGX, _REINHARD, _EXPONENTIAL; without one
 // of them the light is only cut off. The twin for arrays is
-// moka.core.tone_map, which a test compares with this file.
+// moka.core.tone_map, which a test compares with this file. MOKA_TONE_MAP_STOPS
+// is for a person who measures, and has no twin.
 
 #if defined(MOKA_TONE_MAP_NEUTRAL)
 
@@ -77,6 +78,22 @@ vec3 tone_curve(vec3 colour) {
 // The response of film: exposure to density, saturating exponentially.
 vec3 tone_curve(vec3 colour) {
     return 1.0 - exp(-colour);
+}
+
+#elif defined(MOKA_TONE_MAP_STOPS)
+
+// Luminance in steps of a stop, from blue (1/64) over green (1, of which
+// white is 4.5 stops up) to red (16): one colour a stop, edges where it
+// doubles. Not encoded: what a display gets is the square here.
+vec3 tone_curve(vec3 colour) {
+    float luminance = dot(colour, vec3(0.2126, 0.7152, 0.0722));
+    float stops = floor(log2(max(luminance, 1e-10)));
+    float part = clamp((stops + 6.0) / 10.0, 0.0, 1.0);
+    vec3 shade = clamp(
+        vec3(2.0 * part - 1.0, 1.0 - abs(2.0 * part - 1.0), 1.0 - 2.0 * part),
+        0.0, 1.0);
+    shade = 0.15 + 0.85 * shade;
+    return shade * shade;
 }
 
 #else
