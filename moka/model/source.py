@@ -76,12 +76,13 @@ class GltfSource:
 
     def buffer(self, index: int) -> memoryview:
         """The bytes of a buffer, read once, when first asked for."""
-        # Views are decoded in several threads.
-        with self._lock:
-            data = self._buffers.get(index)
-            if data is None:
-                data = self._buffers[index] = self._read_buffer(index)
-            return data
+        data = self._buffers.get(index)
+        if data is None:
+            with self._lock:  # views are decoded in several threads
+                data = self._buffers.get(index)
+                if data is None:
+                    data = self._buffers[index] = self._read_buffer(index)
+        return data
 
     def view(self, index: int) -> memoryview:
         """The bytes of a buffer view, decoded once if it is compressed.
