@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import shlex
 from typing import TYPE_CHECKING, Any
 
 from moka.bench.options import add_scene_options
@@ -37,6 +38,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=1.0,
         help="how far the camera goes around in a frame (default: 1)",
     )
+    parser.add_argument(
+        "--against",
+        metavar="COMMAND",
+        help="take turns, frame by frame, with a program that draws one for "
+        "each line it reads and prints its wall and CPU time in ms; print the "
+        "ratios of the times",
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -45,7 +53,8 @@ def execute(arguments: argparse.Namespace) -> int:
     from moka.bench.results import check_output, format_table, write_json
 
     check_output(arguments.json, arguments.plot)
-    times = _measure(arguments)
+    rival: list[tuple[float, float]] = []
+    times = _measure(arguments, rival)
     rows = [
         [name, series.median, series.quartile_1, series.quartile_3, series.p95]
         for name, series in (
@@ -57,8 +66,16 @@ def execute(arguments: argparse.Namespace) -> int:
     print(format_table(header, rows))
     for name, value in times.counts.items():
         print(f"{name:24} {value}")
+    result = _result(times)
+    if rival:
+        # The first of its frames are warm-up too.
+        compared = _compare(times, rival[-len(times.frame_ms) :])
+        result["against"] = {"command": arguments.against, **compared}
+        print(f"of {arguments.against}:")
+        for name in ("frame", "cpu"):
+            print(f"{name:24} {compared[name]}")
     if arguments.json:
-        write_json(_result(times), arguments.json)
+        write_json(result, arguments.json)
     if arguments.plot:
         from moka.bench.plot import plot_histogram
 
@@ -84,7 +101,25 @@ def _result(times: "FrameTimes") -> dict[str, Any]:
     }
 
 
-def _measure(arguments: argparse.Namespace) -> "FrameTimes":
+def _compare(
+    times: "FrameTimes", rival: list[tuple[float, float]]
+) -> dict[str, Any]:
+    """Ratios of wall and CPU time to those of the rival's (N,) frames."""
+    from moka.bench.measure import ratio_of_pairs
+
+    wall, cpu = zip(*rival, strict=True)
+    return {
+        "frame": ratio_of_pairs(times.frame_ms, wall).as_dict(),
+        "cpu": ratio_of_pairs(times.cpu_ms, cpu).as_dict(),
+    }
+
+
+def _measure(
+    arguments: argparse.Namespace, rival: list[tuple[float, float]]
+) -> "FrameTimes":
+    """The times, and those of a rival's frames, if there is one."""
+    from contextlib import ExitStack
+
     from moka.bench.steady import Orbit, time_frames
     from moka.core.resources import asset_folder
     from moka.graphics.device import GraphicsDevice
@@ -102,9 +137,18 @@ def _measure(arguments: argparse.Namespace) -> "FrameTimes":
     width, height = arguments.size
     step = math.radians(arguments.yaw_per_frame)
     settings = RenderSettings(samples=arguments.samples)
-    with GraphicsDevice.open(
-        arguments.backend, debug=arguments.debug
-    ) as device:
+    with ExitStack() as stack:
+        between = None
+        if arguments.against:
+            from moka.bench.rival import Rival
+
+            opponent = stack.enter_context(
+                Rival(shlex.split(arguments.against))
+            )
+            between = lambda: rival.append(opponent.draw())  # noqa: E731
+        device = stack.enter_context(
+            GraphicsDevice.open(arguments.backend, debug=arguments.debug)
+        )
         renderer = Renderer(device, arguments.size, settings)
         try:
             return time_frames(
@@ -114,6 +158,7 @@ def _measure(arguments: argparse.Namespace) -> "FrameTimes":
                 Orbit(scene, camera, width / height, step),
                 arguments.frames,
                 arguments.warm_up,
+                between=between,
             )
         finally:
             renderer.close()

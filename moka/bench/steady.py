@@ -21,11 +21,13 @@ class FrameTimes:
     """Times (N,) of N frames in milliseconds, and counters of the last.
 
     ``frame_ms`` is from the start of a frame until the GPU has finished it,
-    ``submit_ms`` the part of it in which Python updates, draws and submits.
+    ``submit_ms`` the part of it in which Python updates, draws and submits,
+    ``cpu_ms`` the time of all threads, which hold a software driver.
     """
 
     frame_ms: NDArray[np.float64]
     submit_ms: NDArray[np.float64]
+    cpu_ms: NDArray[np.float64]
     counts: dict[str, int]
 
 
@@ -53,28 +55,39 @@ def time_frames(
     advance: Callable[[int], None],
     frames: int,
     warm_up: int = 3,
+    *,
+    between: Callable[[], object] | None = None,
 ) -> FrameTimes:
     """Draw ``warm_up`` frames untimed and ``frames`` timed ones.
 
     ``advance`` is called with the number of each and moves things. The
     first frames compile and upload, and a software driver compiles once
-    more when it sees the first draws.
+    more when it sees the first draws. ``between`` is called after every
+    frame, untimed.
     """
     device = renderer.device
-    times = np.empty((2, warm_up + frames))
+    times = np.empty((3, warm_up + frames))
     for number in range(warm_up + frames):
-        start = time.perf_counter()
+        cpu, start = time.process_time(), time.perf_counter()
         advance(number)
         commands = CommandList()
         renderer.draw(scene, camera, commands)
         frame = device.submit(commands)
         submitted = time.perf_counter()
         device.finish()
-        times[:, number] = time.perf_counter() - start, submitted - start
+        finished = time.perf_counter()
+        times[:, number] = (
+            finished - start,
+            submitted - start,
+            time.process_time() - cpu,
+        )
+        if between is not None:
+            between()
     counters = frame.wait()
-    frame_ms, submit_ms = 1000.0 * times[:, warm_up:]
+    frame_ms, submit_ms, cpu_ms = 1000.0 * times[:, warm_up:]
     return FrameTimes(
         frame_ms,
         submit_ms,
+        cpu_ms,
         renderer.statistics.counts | asdict(counters),
     )

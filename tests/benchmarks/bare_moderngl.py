@@ -770,6 +770,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--frames", type=int, default=0, metavar="N")
     parser.add_argument("--yaw-per-frame", type=float, default=1.0)
     parser.add_argument("--stats", action="store_true")
+    parser.add_argument(
+        "--on-request",
+        action="store_true",
+        help="then draw a frame for each line on stdin and print its wall "
+        "and CPU time in ms, as `moka bench frame --against` asks",
+    )
     return parser.parse_args()
 
 
@@ -910,6 +916,12 @@ def main() -> None:
                 write_exr(path, floats)
             else:
                 write_png(path, pixels, pool)
+
+    for number, _ in enumerate(sys.stdin if options.on_request else ()):
+        cpu, start = time.process_time(), time.perf_counter()
+        frame(options.yaw + number * options.yaw_per_frame)
+        wall = time.perf_counter() - start
+        print(wall * 1e3, (time.process_time() - cpu) * 1e3, flush=True)
 
     report: dict[str, Any] = {}
     if options.stats:
