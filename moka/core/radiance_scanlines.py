@@ -7,6 +7,8 @@ then the four components one after another, each as packets: a count above
 older one repeats whole pixels. Errors are ValueErrors without a file name.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,11 +25,7 @@ _LONGEST_RUN = 127
 _LONGEST_LITERAL = 128
 
 #: By its first byte: how far a packet reaches.
-_STEPS = np.where(np.arange(256) > 128, 2, np.arange(256) + 1).astype(np.uint8)
-_LONGEST_STEP = _LONGEST_LITERAL + 1
-
-#: The loop over packets takes two to this power of them at a time.
-_DOUBLINGS = 3
+_STEPS = bytes(2 if code > 128 else code + 1 for code in range(256))
 
 
 def decode_scanlines(data: bytes, width: int, height: int) -> Bytes:
@@ -69,7 +67,7 @@ def _decode_new(data: bytes, width: int, height: int) -> Bytes:
 
 
 def _decode_at_once(data: bytes, planes: Bytes) -> tuple[int, int]:
-    """Decode scanlines without a loop over their packets.
+    """Decode scanlines with one short loop over all their packets.
 
     A scanline's header is recognised by its bytes, which a packet may hold
     by chance. So every boundary is checked, and only the scanlines before
@@ -80,7 +78,7 @@ def _decode_at_once(data: bytes, planes: Bytes) -> tuple[int, int]:
     width = size // 4
     values = np.frombuffer(data, np.uint8)
     headers = _find_all(data, bytes([2, 2, width >> 8, width & 0xFF]))
-    starts, stops = _packets(values, headers)
+    starts, stops = _packets(data, headers)
     is_header = np.isin(starts, headers, assume_unique=True)
     codes = values[starts]
     repeated = (codes > 128) & ~is_header
@@ -125,37 +123,29 @@ def _find_all(data: bytes, pattern: bytes) -> NDArray[np.intp]:
 
 
 def _packets(
-    values: Bytes, headers: NDArray[np.intp]
+    data: bytes, headers: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Where the packets from the first byte on begin and end.
 
-    Every byte is taken for the start of a packet, and for each the next
-    start is computed; a table of the starts that lie 2, 4, 8 packets ahead
-    follows by looking the table up in itself. A loop over every eighth
-    packet and the tables in reverse give all true ones. A packet that is
-    cut off at the end is left out.
+    By the shortest loop there is: for every byte a table says how far the
+    packet reaches that begins there, if one does. A packet that is cut off
+    at the end is left out.
     """
-    end = len(values)
-    # What leads beyond the end stays where it arrives.
-    ahead = np.arange(end + _LONGEST_STEP, dtype=np.intp)
-    ahead[:end] += _STEPS.take(values)
-    ahead[headers] = headers + 4
-    tables = [ahead]
-    for _ in range(_DOUBLINGS):
-        tables.append(tables[-1].take(tables[-1]))
+    steps = bytearray(data.translate(_STEPS))
+    for header in headers.tolist():
+        steps[header] = 4
+    starts = np.fromiter(_visited(steps), np.intp)
+    stops = starts + np.frombuffer(steps, np.uint8)[starts]
+    whole = len(starts) - (stops[-1:] > len(data)).sum()
+    return starts[:whole], stops[:whole]
 
-    every = []
-    far = tables.pop().data
-    position = 0
-    while position < end:
-        every.append(position)
-        position = far[position]
-    starts = np.array(every, np.intp)
-    for table in reversed(tables):
-        starts = np.stack([starts, table.take(starts)], 1).reshape(-1)
-    stops = ahead.take(starts)
-    whole = (starts < end) & (stops <= end)
-    return starts[whole], stops[whole]
+
+def _visited(steps: bytearray) -> Iterator[int]:
+    """Where one arrives from 0 by steps that each place tells."""
+    place, end = 0, len(steps)
+    while place < end:
+        yield place
+        place += steps[place]
 
 
 def _decode_in_turn(
