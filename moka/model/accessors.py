@@ -115,7 +115,8 @@ class AccessorReader:
                 )
             # Section 3.11: c / 127 and so on, the lowest integer clamped.
             floats /= np.float32(np.iinfo(array.dtype).max)
-            np.maximum(floats, -1.0, out=floats)
+            if array.dtype.kind == "i":
+                np.maximum(floats, -1.0, out=floats)
         floats.flags.writeable = False
         return floats
 

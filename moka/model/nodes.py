@@ -339,6 +339,6 @@ def _local_matrices(source: GltfSource) -> Array:
 def _columns(
     rows: Iterable[tuple[float, ...]], count: int, width: int
 ) -> Array:
-    """(count, width) of tuples, in half the time of ``np.array``."""
+    """(count, width) of tuples, without a list of them."""
     numbers = np.fromiter(chain.from_iterable(rows), np.float64, count * width)
     return numbers.reshape(count, width)

@@ -204,3 +204,45 @@ def textured(file: GltfFile, shade: tuple[int, int, int]) -> None:
     material = file.unlit(1, 1, 1, 1)
     pbr = file.document["materials"][material]["pbrMetallicRoughness"]
     pbr["baseColorTexture"] = {"index": len(textures) - 1}
+
+
+def test_a_hundred_thousand_instances_are_one_draw(
+    egl_device: GraphicsDevice,
+) -> None:
+    """As many squares of a pixel, each with a place of its own."""
+    side, shown = 320, 32
+    count = side * side
+    column, row = np.meshgrid(np.arange(side), np.arange(side))
+    # All over a picture, in front of one another.
+    places = np.stack(
+        [
+            (column.ravel() % shown + 0.5) * 2 / shown - 1,
+            (row.ravel() % shown + 0.5) * 2 / shown - 1,
+            np.linspace(-1, 1, count),
+        ],
+        axis=1,
+    )
+    file = GltfFile()
+    mesh = file.quad(2 / shown, material=file.unlit(1, 0.5, 0.25, 1))
+    attributes = {"TRANSLATION": file.accessor(places)}
+    file.node(
+        mesh=mesh,
+        extensions={"EXT_mesh_gpu_instancing": {"attributes": attributes}},
+    )
+    scene = scene_of_file(file)
+    renderer = Renderer(
+        egl_device,
+        (shown, shown),
+        RenderSettings(samples=1, float_output=True),
+    )
+    try:
+        commands = CommandList()
+        renderer.draw(scene, square_camera(), commands)
+        read = renderer.read_radiance(commands)
+        counters = egl_device.submit(commands).wait()
+    finally:
+        renderer.close()
+    assert renderer.statistics.counts["visible"] == count > 100_000
+    # The squares, and the pass that shows the picture.
+    assert counters.gl_draws == 2
+    assert (read.data[:, :, :3] == (1, 0.5, 0.25)).all()

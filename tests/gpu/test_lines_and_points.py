@@ -298,3 +298,36 @@ def test_with_normals_they_are_lit_like_surfaces(
     assert shades[0][16, column] == pytest.approx(
         shades[1][16, column], abs=2e-3
     )
+
+
+def test_a_cloud_of_a_million_points(egl_device: GraphicsDevice) -> None:
+    """Every pixel shows the nearest of its thousand points."""
+    side, layers = 32, 1000
+    column, row = np.meshgrid(np.arange(side), np.arange(side))
+    flat = np.stack(
+        [
+            2 * (column.ravel() + 0.5) / side - 1,
+            1 - 2 * (row.ravel() + 0.5) / side,
+        ],
+        axis=1,
+    )
+    random = np.random.default_rng(3)
+    depth = random.permuted(
+        np.tile(np.linspace(-1, 1, layers), (len(flat), 1)), axis=1
+    )
+    places = np.empty((layers, len(flat), 3), np.float32)
+    places[..., :2] = flat
+    places[..., 2] = depth.T
+    shade = random.random((layers, len(flat))).astype(np.float32)
+    colours = np.ones((layers, len(flat), 4), np.float32)
+    colours[..., 0] = shade
+    cloud = Primitive(
+        {"POSITION": places.reshape(-1, 3), "COLOR_0": colours.reshape(-1, 4)},
+        topology=Topology.POINTS,
+    )
+    assert cloud.vertex_count > 1_000_000
+    picture = draw_radiance(egl_device, shown(cloud), square_camera())
+    nearest = shade[depth.argmax(axis=1), np.arange(len(flat))]
+    assert picture[:, :, 0] == pytest.approx(
+        nearest.reshape(side, side), abs=1e-6
+    )
