@@ -162,7 +162,7 @@ def describe_material(
     surface or without texture coordinates, an emissive texture nothing
     under a black factor, a tangent nothing without a normal map. Points and
     lines without normals show base colour and emission, and have no normal
-    map without tangents (glTF 2.0, section 3.9.6); surfaces without tangents
+    map without tangents (glTF 2.0, section 3.9.7); surfaces without tangents
     get them for a normal map (3.7.2.1). What animations change is described
     so that every value can be drawn. Unless it ``carries``, no
     texture takes up the values of another.

@@ -251,7 +251,7 @@ def test_no_index_restarts_a_strip(egl_device: GraphicsDevice) -> None:
 def test_without_normals_there_is_no_light_but_emission(
     egl_device: GraphicsDevice, topology: Topology
 ) -> None:
-    """Base colour, vertex colour and emission are summed (section 3.9.6)."""
+    """Base colour, vertex colour and emission are summed (section 3.9.7)."""
     material = Material(
         base_colour_factor=(0.5, 0.25, 0.125, 1), emissive_factor=(0, 0, 0.5)
     )
