@@ -7,6 +7,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from PIL import Image as PillowImage
+
+import moka
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
@@ -117,3 +120,106 @@ def test_hello_model__turns_its_model() -> None:
     assert first.shape == later.shape == (54, 96, 4)
     assert luminance(first).std() > 0.05
     assert np.abs(luminance(first) - luminance(later)).mean() > 0.01
+
+
+def test_ibl_by_roughness__truth_is_near() -> None:
+    example = load("ibl_by_roughness")
+    example.MODES[2]["reference_samples"] = 64
+    split, filtered, truth = (
+        luminance(image.pixels) for image in example.rows((140, 24))
+    )
+    # Wide lobes, where the sky is smooth: from the middle to the right.
+    rough = np.s_[:, 70:]
+    for approximation in (split, filtered):
+        error = np.abs(approximation - truth)[rough].mean()
+        assert error < 0.05 * truth[rough].mean()
+    assert example.render((70, 36)).size == (70, 36)
+
+
+def test_many_objects__are_few_draws() -> None:
+    example = load("many_objects")
+    app = example.run((96, 54))
+    counts = app.renderer.statistics.counts
+    assert counts["objects"] == 10_000
+    assert 0 < counts["visible"] <= 10_000
+    assert counts["permutations"] == 1
+    assert luminance(app.image.pixels).std() > 0.02
+
+
+def test_transparent_order__is_right_from_both_sides() -> None:
+    example = load("transparent_order")
+    pixels = example.render((192, 72)).pixels[..., :3]
+    front, back = pixels[:, :96], pixels[:, 96:]
+    # Blue glass is in front of one picture, red glass of the other.
+    assert nearest_tint(front) == 2
+    assert nearest_tint(back) == 0
+
+
+def nearest_tint(pixels: NDArray[np.float32]) -> int:
+    """The channel that is strongest on the whole, background aside."""
+    difference = pixels - pixels[0, 0]
+    return int(np.argmax(difference.sum(axis=(0, 1))))
+
+
+def test_animated_character__walks_and_stands() -> None:
+    example = load("animated_character")
+    first, later = (
+        example.render((64, 64), frames=frames).pixels for frames in (2, 20)
+    )
+    assert np.abs(luminance(first) - luminance(later)).max() > 0.1
+
+    app = example.AnimatedCharacter()
+    moka.run(app, headless=True, frames=2, size=(16, 16))
+    player = app.character.animations
+    assert player.names == ["walk", "stand"]
+    app.next_animation()
+    assert player.current.animation == 1
+
+
+def test_turntable__writes_a_moving_picture(tmp_path: Path) -> None:
+    example = load("turntable")
+    path = tmp_path / "turntable.webp"
+    example.write(str(path), size=(48, 36), frames=4)
+    with PillowImage.open(path) as moving:
+        assert moving.n_frames == 4
+        assert moving.size == (48, 36)
+    assert luminance(example.render((48, 36)).pixels).std() > 0.02
+
+
+def test_dataset__has_the_truth_beside_the_picture(tmp_path: Path) -> None:
+    example = load("dataset")
+    (image,) = example.pictures(None, 1, (48, 36))
+    assert set(image.layers) == set(example.AOVS)
+    hit = image.layers["object-id"] > 0
+    assert 0.02 < hit.mean() < 0.9
+    length = np.linalg.norm(image.layers["normal"][hit], axis=1)
+    np.testing.assert_allclose(length, 1.0, atol=1e-5)
+    image.save(tmp_path / "0000.exr")
+    assert example.render((64, 48)).size == (64, 48)
+    pitches = [float(view.split(",")[1]) for view in example.views(20)]
+    assert 0 < min(pitches) < max(pitches) < 90
+
+
+def test_points_and_lines__have_their_own_colours() -> None:
+    example = load("points_and_lines")
+    pixels = example.render((160, 90)).pixels[..., :3]
+    assert (pixels.min(axis=2) > 0.95).any()  # the white line
+    background = pixels[0, 0]
+    drawn = np.abs(pixels - background).max(axis=2) > 0.1
+    for channel in range(3):
+        others = np.delete(pixels, channel, axis=2).max(axis=2)
+        assert (drawn & (pixels[..., channel] > 2 * others)).any()
+
+
+def test_own_shader__has_two_permutations() -> None:
+    example = load("own_shader")
+    shown = example.render((160, 90)).to_display()[..., :3].astype(int)
+    plain, striped = shown[:, :80], shown[:, 80:]
+    # White stripes are grey where they are lit; paint never is.
+    assert not is_grey(plain).any()
+    assert is_grey(striped).mean() > 0.05
+
+
+def is_grey(pixels: NDArray[np.int_]) -> NDArray[np.bool_]:
+    """Bright pixels without a colour."""
+    return (np.ptp(pixels, axis=2) < 12) & (pixels.min(axis=2) > 110)
