@@ -91,6 +91,8 @@ def decode_primitives(
     says.
     """
     parts = _parts(source)
+    if not parts:
+        return {}
     try:
         import DracoPy
     except ImportError as reason:
@@ -169,10 +171,11 @@ def _decode(
         raise source.error(path, fault)
     try:
         mesh = draco.decode(data)
-    # It has errors of its own for some faults, and of Python's for others.
+    # It has errors of its own for some faults, and of Python's for others;
+    # whatever is wrong, they say that it is no Draco data.
     except Exception as reason:
         raise source.error(
-            path, f"the Draco data cannot be decoded: {reason}"
+            path, "the Draco data cannot be decoded: they are damaged"
         ) from reason
     found = {each["unique_id"]: each for each in mesh.attributes}
     arrays = {}

@@ -47,7 +47,7 @@ def read_meshes(source: GltfSource, materials: list[Material]) -> list[Mesh]:
     accessors = AccessorReader(source)
     decoded: dict[str, DecodedPrimitive] = {}
     if any(
-        primitive.extensions
+        "KHR_draco_mesh_compression" in (primitive.extensions or ())
         for mesh in source.document.meshes
         for primitive in mesh.primitives
     ):

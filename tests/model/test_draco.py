@@ -327,15 +327,17 @@ def test_broken_data_are_errors_and_nothing_worse() -> None:
     assert not any("\n" in message for message in messages)
 
 
-def test_a_file_without_it_imports_none_of_it() -> None:
+@pytest.mark.parametrize("extensions", [{}, {"KHR_materials_variants": {}}])
+def test_a_file_without_it_imports_none_of_it(extensions: object) -> None:
     code = (
         "import sys, moka.model; moka.model.load_model(sys.stdin.buffer.read())"
         "\nprint([name for name in sys.modules if name in "
         "('DracoPy', 'moka.model.draco', 'moka.model.workers')])"
     )
+    path = "meshes[0].primitives[0].extensions"
     output = subprocess.run(
         [sys.executable, "-c", code],
-        input=glb(triangle()),
+        input=glb(changed(path, extensions)),
         check=True,
         capture_output=True,
     ).stdout
