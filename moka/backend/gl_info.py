@@ -9,7 +9,14 @@ from moka.commands.descriptors import PixelFormat
 __all__ = ["compressed_formats", "read_info"]
 
 # Drivers that run on the CPU, by what their names hold.
-_SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
+_SOFTWARE = (
+    "llvmpipe",
+    "softpipe",
+    "swrast",
+    "swiftshader",
+    "software",
+    "basic render",
+)
 
 # The version of OpenGL or the extension that brings formats of blocks.
 _COMPRESSED = (
