@@ -17,6 +17,8 @@ from moka.model.validation.issues import Place
 __all__ = ["check_accessors"]
 
 _UNSIGNED_INT, _FLOAT = 5125, 5126
+# Elements that no byte of the file backs; beyond them data go unchecked.
+_MOST_ZEROS = 1 << 22
 _COMPRESSED = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 
 
@@ -192,6 +194,8 @@ def _with_sparse(
     if new is None or (flat >= count).any():
         return None
     columns, rows = WIDTHS[kind]
+    if base is None and count > _MOST_ZEROS:
+        return None
     if base is None:
         base = np.zeros((count, columns * rows), COMPONENTS[component])
     array = base.copy()

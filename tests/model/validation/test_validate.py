@@ -117,6 +117,21 @@ def test_every_vertex_is_looked_at() -> None:
     assert issue.message == "element 123456 has the length 2"
 
 
+def test_elements_that_no_byte_backs_take_no_memory() -> None:
+    document = copy.deepcopy(WHOLE)
+    accessor = document["accessors"][1]
+    del accessor["bufferView"]
+    accessor["count"] = 2**50
+    accessor["sparse"] = {
+        "count": 1,
+        "indices": {"bufferView": 5, "componentType": 5123},
+        "values": {"bufferView": 0},
+    }
+    report = validate(glb(json.dumps(document).encode(), BINARY))
+    codes = {issue.code for issue in report.issues}
+    assert "MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT" in codes
+
+
 anything = st.recursive(
     st.none()
     | st.booleans()
@@ -168,3 +183,21 @@ def test_any_json_gets_a_report(
         except (TypeError, KeyError, IndexError):
             continue  # A change before took its place away.
     validate(glb(json.dumps(document).encode(), BINARY))
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    st.integers(0, len(whole())),
+    st.lists(
+        st.tuples(st.integers(0, len(whole()) - 1), st.integers(0, 255)),
+        max_size=4,
+    ),
+)
+def test_any_bytes_get_a_report(
+    length: int, changes: list[tuple[int, int]]
+) -> None:
+    """Cut off anywhere, and any byte another one."""
+    data = bytearray(whole())
+    for offset, value in changes:
+        data[offset] = value
+    validate(bytes(data[:length]))
