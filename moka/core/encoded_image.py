@@ -35,6 +35,17 @@ class EncodedImage:
     def __repr__(self) -> str:
         return f"EncodedImage({self.where!r})"
 
+    @property
+    def size(self) -> int:
+        """How many bytes it has, 0 for a file that is gone."""
+        if self._data is not None:
+            return len(self._data)
+        assert self.path is not None
+        try:
+            return self.path.stat().st_size
+        except OSError:
+            return 0
+
     def read(self) -> bytes | memoryview:
         """The encoded bytes; raises ImageFileError if the file is gone."""
         if self._data is not None:
