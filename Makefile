@@ -6,7 +6,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 ARGS ?=
 
-.PHONY: demo test lint format types docs bench clean
+.PHONY: demo test lint format types docs gallery bench clean
 
 demo: $(VENV)/.dev
 	$(BIN)/moka render -o demo.png $(ARGS)
@@ -28,6 +28,9 @@ types: $(VENV)/.dev
 
 docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+gallery: $(VENV)/.dev
+	$(BIN)/python docs/make_gallery.py $(ARGS)
 
 # Against a script that does the same with bare ModernGL and nothing else:
 # make bench MODEL=helmet.gltf ENVIRONMENT=sky.hdr

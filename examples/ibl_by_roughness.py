@@ -38,7 +38,7 @@ def model() -> moka.Model:
 
 def camera() -> moka.Camera:
     """Looks at the row from the front, along -Z."""
-    lens = Orthographic(xmag=3.5, ymag=0.6, near=0.1, far=10.0)
+    lens = Orthographic(xmag=3.5, ymag=0.7, near=0.1, far=10.0)
     result = moka.Camera(lens)
     result.transform.position = ((COLUMNS - 1) / 2, 0.0, 5.0)
     return result

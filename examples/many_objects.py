@@ -57,7 +57,7 @@ class ManyObjects(moka.App):
         self.camera.frame(
             self.scene.bounds(),
             width / height,
-            yaw=math.radians(30) + 0.2 * time.total,
+            yaw=math.radians(37) + 0.2 * time.total,
             pitch=math.radians(28),
             distance=95.0,
         )

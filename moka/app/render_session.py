@@ -105,6 +105,8 @@ class PendingImage:
         self._radiance = radiance
         self._display = display
         self._values = values
+        # As it is drawn: a text may name a colour.
+        self._background = session.scene.background
 
     def wait(self) -> "Image":
         """The picture, when the GPU has made it; raises what it raised."""
@@ -120,7 +122,7 @@ class PendingImage:
             assert self._radiance.data is not None
             # What was read back has its bottom row first.
             pixels = _over_background(
-                self._radiance.data[::-1], request.background
+                self._radiance.data[::-1], self._background
             )
         if self._display is not None:
             assert self._display.data is not None

@@ -59,6 +59,20 @@ def test_pixels_are_neither_exposed_nor_tone_mapped() -> None:
     assert not np.array_equal(plain.to_display(), bright.to_display())
 
 
+def test_a_colour_behind_the_model_is_in_the_pixels_too() -> None:
+    for background in ("#ff0080", (1.0, 0.0, 0.2158605)):
+        image = moka.render(
+            square(), size=(32, 8), environment="none", background=background
+        )
+        np.testing.assert_allclose(
+            image.pixels[0, 0], (1.0, 0.0, 0.2158605, 1.0), rtol=1e-5
+        )
+        assert tuple(image.to_display()[0, 0]) == (255, 0, 128, 255)
+        np.testing.assert_allclose(image.pixels[4, 16], 1.0)
+    clear = moka.render(square(), size=(32, 8), background="transparent")
+    assert not clear.pixels[0, 0].any()
+
+
 def test_what_the_gpu_shows_is_what_the_pixels_say() -> None:
     """The display bytes against NumPy's tone map of the same pixels."""
     for name in ("neutral", "aces", "agx", "reinhard", "exponential", "none"):
