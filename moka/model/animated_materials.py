@@ -28,11 +28,21 @@ def marked_materials(
         for channel in animation.channels:
             if channel.target.kind == "material":
                 moving[channel.target.index].add(channel.target.property)
-    return [
-        replace(material, animated=frozenset(moving[index]))
+    marked = {
+        material: replace(material, animated=frozenset(moving[index]))
         if index in moving
         else material
         for index, material in enumerate(materials)
+    }
+    # Levels of detail are the marked ones too.
+    return [
+        replace(
+            material,
+            coarser=tuple(marked.get(each, each) for each in material.coarser),
+        )
+        if material.coarser
+        else material
+        for material in marked.values()
     ]
 
 

@@ -16,6 +16,7 @@ from moka.core.errors import ModelError
 from moka.material.material import AlphaMode, Material, TextureTransform
 from moka.model import Model, load_model
 from tests.model.files import TRIANGLE_BINARY, glb, triangle
+from tests.support.gltf_file import GltfFile
 
 PIXELS = "data:image/png;base64," + base64.b64encode(b"pixels").decode()
 
@@ -324,3 +325,32 @@ class TestExtensions:
             extensionsRequired=["KHR_mesh_quantization"],
         )
         assert model.unsupported_extensions == ()
+
+
+def test_coarser_levels_are_those_that_animations_move() -> None:
+    file = GltfFile()
+    coarse = file.unlit(0, 1, 0, 1)
+    fine = file.unlit(1, 0, 0, 1)
+    finest = file.document["materials"][fine]
+    finest["extensions"]["MSFT_lod"] = {"ids": [coarse]}
+    file.node(mesh=file.quad(material=fine))
+    pointer = f"/materials/{coarse}/pbrMetallicRoughness/baseColorFactor"
+    sampler = {
+        "input": file.accessor([0, 1], limits=True),
+        "output": file.accessor([[0, 1, 0, 1], [0, 0, 1, 1]]),
+    }
+    target = {
+        "path": "pointer",
+        "extensions": {"KHR_animation_pointer": {"pointer": pointer}},
+    }
+    file.document["animations"] = [
+        {
+            "samplers": [sampler],
+            "channels": [{"sampler": 0, "target": target}],
+        }
+    ]
+    model = load_model(file.glb())
+    assert model.materials[coarse].animated == {"base_colour_factor"}
+    assert model.materials[fine].coarser == (model.materials[coarse],)
+    (primitive,) = model.meshes[0].primitives
+    assert primitive.material is model.materials[fine]
