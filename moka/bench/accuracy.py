@@ -20,8 +20,8 @@ _QUICK_ROUGHNESSES = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 _QUICK_SUBSTANCES = ("black dielectric", "clay", "gold")
 
 # diameter of a sphere in pixels, samples of the truth, rounds of times
-_THOROUGH = (24, 4096, 7)
-_QUICK = (16, 1024, 5)
+_THOROUGH = (16, 4096, 5)
+_QUICK = (12, 1024, 3)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -49,7 +49,7 @@ class Preintegrator:
         height, width, _ = table.shape
         maps.importance = self._device.create_texture(
             TextureDescriptor(
-                PixelFormat.RGB32F, width, height, label="importance table"
+                PixelFormat.RGBA32F, width, height, label="importance table"
             ),
             [table],
         )

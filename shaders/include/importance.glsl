@@ -4,10 +4,12 @@
 #include "include/environment.glsl"
 
 // Per cell of the map: x probability of the cells up to it in its row, y of
-// the rows up to its own, z density over texture coordinates at its centre.
-// Linear filtering, repeating in u and clamped in v: the density in between
-// is interpolated like the map.
+// the rows up to its own, z density over texture coordinates at its centre,
+// w guides, see guide_to_cell and guide_to_row. Linear filtering, repeating
+// in u and clamped in v: the density in between is interpolated like the map.
 uniform sampler2D importance_table;
+
+const int GUIDE_BASE = 4096;
 
 // Density over texture coordinates to density per steradian. The sine is
 // that of the polar angle; at a pole the density has no bound.
@@ -32,11 +34,25 @@ vec2 sample_tent(vec2 point) {
         lessThan(twice, vec2(1.0)));
 }
 
+// The first cell of a row that is above cell / cells; the last past the end.
+int guide_to_cell(int cell, int cells, int row) {
+    if (cell >= cells) return cells - 1;
+    return int(texelFetch(importance_table, ivec2(cell, row), 0).w)
+        % GUIDE_BASE;
+}
+
+int guide_to_row(int row, int rows) {
+    if (row >= rows) return rows - 1;
+    return int(texelFetch(importance_table, ivec2(0, row), 0).w)
+        / GUIDE_BASE;
+}
+
 // The first row up to which the probability is above ``u``, and how far
 // between the sums ``u`` is, 0 to 1.
 float find_row(float u, int rows, out int row) {
-    row = 0;
-    for (int end = rows - 1; row < end;) {
+    int guide = int(u * float(rows));
+    row = guide_to_row(guide, rows);
+    for (int end = guide_to_row(guide + 1, rows); row < end;) {
         int middle = (row + end) / 2;
         if (texelFetch(importance_table, ivec2(0, middle), 0).y > u)
             end = middle;
@@ -46,13 +62,14 @@ float find_row(float u, int rows, out int row) {
     float before = row > 0
         ? texelFetch(importance_table, ivec2(0, row - 1), 0).y : 0.0;
     float after = texelFetch(importance_table, ivec2(0, row), 0).y;
-    return (u - before) / max(after - before, 1e-30);
+    return clamp((u - before) / max(after - before, 1e-30), 0.0, 1.0);
 }
 
 // The same for the cells of a row.
 float find_cell(float u, int cells, int row, out int cell) {
-    cell = 0;
-    for (int end = cells - 1; cell < end;) {
+    int guide = int(u * float(cells));
+    cell = guide_to_cell(guide, cells, row);
+    for (int end = guide_to_cell(guide + 1, cells, row); cell < end;) {
         int middle = (cell + end) / 2;
         if (texelFetch(importance_table, ivec2(middle, row), 0).x > u)
             end = middle;
@@ -62,7 +79,7 @@ float find_cell(float u, int cells, int row, out int cell) {
     float before = cell > 0
         ? texelFetch(importance_table, ivec2(cell - 1, row), 0).x : 0.0;
     float after = texelFetch(importance_table, ivec2(cell, row), 0).x;
-    return (u - before) / max(after - before, 1e-30);
+    return clamp((u - before) / max(after - before, 1e-30), 0.0, 1.0);
 }
 
 // A direction of the environment's own space, w its density, for a point of

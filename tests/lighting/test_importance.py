@@ -5,7 +5,11 @@ import pytest
 from scipy import stats
 
 from moka.lighting import importance
-from moka.lighting.importance import cell_weights, importance_table
+from moka.lighting.importance import (
+    GUIDE_BASE,
+    cell_weights,
+    importance_table,
+)
 from tests.support.oracles.reference import bilinear
 
 
@@ -28,7 +32,7 @@ def drawn(table: np.ndarray) -> np.ndarray:
 def test_cells_are_drawn_by_their_light():
     pixels = sunny_map()
     table = importance_table(pixels)
-    assert table.shape == (16, 32, 3)
+    assert table.shape == (16, 32, 4)
     sine = np.sin((np.arange(16) + 0.5) / 16 * np.pi)
     light = pixels @ np.array([0.2126, 0.7152, 0.0722]) * sine[:, None]
     # Float32 sums shift a probability by up to 6e-8 of a row's.
@@ -48,11 +52,24 @@ def test_large_maps_share_cells(monkeypatch):
     monkeypatch.setattr(importance, "LARGEST_HEIGHT", 8)
     pixels = sunny_map(32)
     shared = importance_table(pixels)
-    assert shared.shape == (8, 16, 3)
+    assert shared.shape == (8, 16, 4)
     monkeypatch.setattr(importance, "LARGEST_HEIGHT", 1024)
     whole = cell_weights(pixels)
     weights = whole.reshape(8, 4, 16, 4).mean(axis=(1, 3)) / whole.mean()
     assert shared[..., 2] == pytest.approx(weights, rel=1e-4, abs=1e-4)
+
+
+def test_guides_lead_to_where_sums_exceed_a_number():
+    table = importance_table(sunny_map(16))
+    rows, cells = table.shape[:2]
+    guides = table[..., 3].astype(int)
+    above = np.arange(cells)[:, None] / cells
+    for row in range(rows):
+        first = np.argmax(table[row, :, 0] > above, axis=1)
+        assert (guides[row] % GUIDE_BASE == first).all()
+    above = np.arange(rows)[:, None] / rows
+    first = np.argmax(table[:, 0, 1] > above, axis=1)
+    assert (guides[:, 0] // GUIDE_BASE == first).all()
 
 
 @pytest.mark.parametrize("shape", [(1, 1, 3), (2, 4, 3)])
