@@ -40,6 +40,10 @@ _NEGLIGIBLE = 1e-3
 _TEXELS_PER_TRIANGLE = 16
 _TRIANGLES_PER_DRAW = 256
 
+# So many triangles are worth a look at a part of them first.
+_MANY = 4096
+_SAMPLE = 16
+
 # Triangles measured at a time, so that temporaries stay small.
 _BLOCK = 1 << 14
 
@@ -110,15 +114,18 @@ class StillPicture:
         """Positions of the primitives that may be seen, in order."""
         return list(self._draws_of)
 
-    def measure(self, primitive: int, texture: Texture) -> Footprints | None:
+    def measure(
+        self, primitive: int, texture: Texture, stride: int
+    ) -> Footprints | None:
         """How a primitive reads ``texture``; None if that is not clear.
 
-        ``primitive`` is its position among the scene's. In any thread.
+        ``primitive`` is its position among the scene's; one of ``stride``
+        triangles is measured. In any thread.
         """
-        key = (primitive, texture.uv_set, texture.transform)
+        key = (primitive, texture.uv_set, texture.transform, stride)
         with self._lock:
             if key not in self._measured:
-                self._measured[key] = self._measure(primitive, texture)
+                self._measured[key] = self._measure(primitive, texture, stride)
             return self._measured[key]
 
     def effort(self, primitive: int) -> int:
@@ -127,10 +134,12 @@ class StillPicture:
         draws = len(self._draws_of[primitive])
         return draws * (triangles + _TRIANGLES_PER_DRAW)
 
-    def _measure(self, index: int, texture: Texture) -> Footprints | None:
+    def _measure(
+        self, index: int, texture: Texture, stride: int
+    ) -> Footprints | None:
         primitive = self._primitives[index]
         coordinates = _coordinates(primitive, texture)
-        corners = triangle_corners(primitive)
+        corners = triangle_corners(primitive)[::stride]
         if coordinates is None or not len(corners):
             return None
         positions = primitive.attributes["POSITION"]
@@ -186,10 +195,21 @@ class SampledLevels:
         )
         if effort * _TEXELS_PER_TRIANGLE > width * height:
             return 0
+        # Where a part of the triangles needs the finest level, so does it all.
+        level = 0
+        for stride in (_SAMPLE, 1) if effort > _MANY else (1,):
+            level = self._finest_of(width, height, stride)
+            if not level:
+                break
+        return level
+
+    def _finest_of(self, width: int, height: int, stride: int) -> int:
+        """By one of ``stride`` triangles."""
+        picture = self._picture
         exact: list[Array] = []
         areas: list[Array] = []
         for primitive, texture in self._reads:
-            measured = picture.measure(primitive, texture)
+            measured = picture.measure(primitive, texture, stride)
             if texture.sampler.mipmap is MipmapMode.NONE or measured is None:
                 return 0
             steps = np.maximum(
@@ -200,7 +220,7 @@ class SampledLevels:
         return _level(
             np.concatenate(exact),
             np.concatenate(areas),
-            picture.size[0] * picture.size[1],
+            picture.size[0] * picture.size[1] // stride,
             max(width, height).bit_length() - 1,
         )
 

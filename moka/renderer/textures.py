@@ -239,6 +239,9 @@ class TexturePool:
             white = np.full_like(texels[:, :, :1], np.iinfo(texels.dtype).max)
             texels = np.concatenate([texels, white], axis=2)
             pixels = PixelFormat.RGBA16
+        if _is_of_one_colour(texels):
+            self._statistics.count("textures_of_one_colour")
+            return [np.ascontiguousarray(texels[:1, :1])], pixels
         finest = levels_beyond(
             (width, height),
             self._device.info.max_texture_size,
@@ -268,6 +271,14 @@ class TexturePool:
                 finest=finest,
             )
         return levels if request.has_levels else levels[:1], pixels
+
+
+def _is_of_one_colour(texels: NDArray[Any]) -> bool:
+    """Whether all texels are the same; most images show it at a glance."""
+    first = texels[0, 0]
+    if (texels[::61, ::61] != first).any():
+        return False
+    return all(bool((row == first).all()) for row in texels)
 
 
 def _finish(request: TextureRequest, texels: NDArray[Any]) -> "Finish | None":

@@ -118,6 +118,55 @@ def test_colour_key_becomes_alpha() -> None:
     )
 
 
+def test_interlaced_png() -> None:
+    """Adam7: ISO/IEC 15948, 8.2; seven pictures of fewer pixels."""
+    texels = noise(11, 13, 3)
+    rows = b""
+    for x, y, dx, dy in (
+        (0, 0, 8, 8),
+        (4, 0, 8, 8),
+        (0, 4, 4, 8),
+        (2, 0, 4, 4),
+        (0, 2, 2, 4),
+        (1, 0, 2, 2),
+        (0, 1, 1, 2),
+    ):
+        rows += b"".join(b"\0" + r.tobytes() for r in texels[y::dy, x::dx])
+    header = struct.pack(">IIBBBBB", 13, 11, 8, 2, 0, 0, 1)
+    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
+    data += chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    np.testing.assert_array_equal(decoded(data), texels)
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG"])
+def test_profiles_are_ignored(kind: str) -> None:
+    """glTF 2.0, 3.8.2: texels are what they are, whatever is said of them."""
+    from PIL import ImageCms
+
+    image = PillowImage.fromarray(noise(16, 16, 3))
+    profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("LAB"))
+    tagged = encode(image, kind, icc_profile=profile.tobytes())
+    assert len(tagged) > len(encode(image, kind))
+    np.testing.assert_array_equal(decoded(tagged), decoded(encode(image, kind)))
+
+
+def test_gamma_is_ignored() -> None:
+    texels = noise(4, 4, 3)
+    gamma = chunk(b"gAMA", struct.pack(">I", 100000))
+    np.testing.assert_array_equal(decoded(png(texels, 2, gamma)), texels)
+
+
+def test_adobe_ycck_jpeg_is_not_inverted() -> None:
+    """As browsers show it: white paper is white."""
+    cmyk = np.zeros((32, 32, 4), np.uint8)
+    cmyk[8:24, 8:24] = (0, 255, 255, 0)
+    data = encode(PillowImage.fromarray(cmyk, "CMYK"), "JPEG", quality=95)
+    assert b"Adobe" in data
+    result = decoded(data).astype(int)
+    assert np.abs(result[2, 2] - 255).max() < 6
+    assert np.abs(result[16, 16] - (255, 0, 0)).max() < 24
+
+
 @pytest.mark.parametrize("mode", ["L", "RGB", "CMYK"])
 @pytest.mark.parametrize("progressive", [False, True])
 def test_jpeg(mode: str, progressive: bool) -> None:

@@ -7,19 +7,25 @@ import math
 import numpy as np
 import pytest
 
+from moka.commands.command_list import CommandList
 from moka.commands.descriptors import (
     Filter,
     MipmapMode,
     SamplerDescriptor,
     Wrap,
 )
+from moka.core import decode as decode_module
 from moka.core.colour import decode_srgb
+from moka.core.encoded_image import EncodedImage
 from moka.core.mip_levels import reduce_levels
+from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
+from moka.lighting.environment import Environment
 from moka.material.material import AlphaMode, Material, Texture
 from moka.model.cameras import Perspective
 from moka.model.geometry import quad
 from moka.model.mesh import Primitive
+from moka.renderer.renderer import Renderer
 from moka.renderer.texture_settings import levels_beyond
 from moka.scene.camera import Camera
 from tests.support.pictures import (
@@ -263,3 +269,55 @@ def test_opaque_colours_do_not_depend_on_their_alpha(
             draw_radiance(egl_device, scene, square_camera(), (8, 8))
         )
     assert np.array_equal(*pictures)
+
+
+def test_colour_and_data_of_one_image_are_decoded_once(
+    egl_device: GraphicsDevice, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And uploaded as either."""
+    decoded = []
+    decode = decode_module.decode_image
+
+    def counted(image: EncodedImage) -> np.ndarray:
+        decoded.append(image.where)
+        return decode(image)
+
+    monkeypatch.setattr(decode_module, "decode_image", counted)
+    texture = Texture(encoded(np.tile(RANDOM.integers(0, 256, (8, 8, 1)), 3)))
+    shape, _ = spread(texture, 0.0, 1.0)
+    material = Material(
+        base_colour_texture=texture,
+        metallic_roughness_texture=texture,
+        roughness_factor=0.7,
+    )
+    scene = scene_of(
+        [(shape, material, placed_at())], Environment.uniform((1, 1, 1))
+    )
+    picture = draw_radiance(egl_device, scene, square_camera(), (16, 16))
+    assert len(decoded) == 1
+    assert picture[:, :, 0].std() > 0.01
+
+
+@pytest.mark.parametrize("side", [64, 65])
+def test_an_image_of_one_colour_is_one_texel(
+    egl_device: GraphicsDevice, side: int
+) -> None:
+    """And another is not, even if it differs in one texel."""
+    texels = np.full((side, side, 3), (200, 100, 50), np.uint8)
+    sizes = []
+    for changed in (False, True):
+        if changed:
+            texels[side - 2, side - 3, 1] += 1
+        shape, material = spread(Texture(encoded(texels)), 0.0, 1.0)
+        scene = scene_of([(shape, material, placed_at())])
+        statistics = Statistics()
+        renderer = Renderer(egl_device, (64, 64), statistics=statistics)
+        commands = CommandList()
+        renderer.draw(scene, square_camera(), commands)
+        read = renderer.read_radiance(commands)
+        egl_device.submit(commands).wait()
+        renderer.close()
+        sizes.append(statistics.counts.get("textures_of_one_colour", 0))
+        exact = decode_srgb(np.array([200, 100, 50]) / 255)
+        assert np.abs(read.data[:, :, :3] - exact).max() < 8e-3
+    assert sizes == [1, 0]

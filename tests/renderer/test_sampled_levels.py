@@ -16,6 +16,7 @@ from moka.material.material import Material, Texture, TextureTransform
 from moka.model.cameras import Orthographic, Perspective
 from moka.model.geometry import quad, sphere
 from moka.model.mesh import Primitive
+from moka.renderer import sampled_levels
 from moka.renderer.sampled_levels import (
     SampledLevels,
     StillPicture,
@@ -202,6 +203,30 @@ def test_many_triangles_for_few_texels_are_not_measured() -> None:
     camera.transform.translate((0, 0, 5))
     assert finest(fine, camera=camera, size=(8, 8), texels=(1024, 1024)) > 0
     assert finest(fine, camera=camera, size=(8, 8), texels=(256, 256)) == 0
+
+
+@pytest.mark.parametrize("side", [16, 33, 48, 300, 700])
+def test_a_look_at_a_part_first_changes_nothing(
+    side: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And measures fewer triangles where all levels are needed."""
+    counts = []
+
+    def counted(positions: np.ndarray, *rest: Any, **named: Any) -> Any:
+        counts[-1] += len(positions)
+        return footprints(positions, *rest, **named)
+
+    monkeypatch.setattr(sampled_levels, "footprints", counted)
+    levels = []
+    for many in (1 << 30, 0):
+        monkeypatch.setattr(sampled_levels, "_MANY", many)
+        counts.append(0)
+        levels.append(
+            finest(sphere(1.0, 64, 48), size=(side, side), texels=(1024, 512))
+        )
+    assert levels[0] == levels[1]
+    if not levels[0]:
+        assert counts[1] < counts[0] / 10
 
 
 def test_a_picture_ends_when_anything_moves() -> None:
