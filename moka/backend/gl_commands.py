@@ -1,14 +1,12 @@
 """Executes the rare commands: what sets up and ends passes."""
 
-import time
 from collections.abc import Callable
 from ctypes import byref, c_float
 from typing import Any
 
-import numpy as np
-
 from moka.backend import gl_constants as c
 from moka.backend.gl_functions import Functions
+from moka.backend.gl_readback import PixelReader
 from moka.backend.gl_state import StateCache
 from moka.backend.gl_textures import GlFramebuffer
 from moka.commands.commands import (
@@ -31,9 +29,9 @@ __all__ = ["CommandRunner"]
 class CommandRunner:
     """Runs commands and remembers which framebuffer draws go to.
 
-    ``resource`` gives the GL object of a handle. ``uploaded`` and
-    ``read_seconds`` add up bytes written and seconds spent reading back, for
-    whoever takes them and sets them to zero.
+    ``resource`` gives the GL object of a handle, ``reader`` reads pixels.
+    ``uploaded`` adds up bytes written, for whoever takes it and sets it to
+    zero.
     """
 
     def __init__(
@@ -41,13 +39,14 @@ class CommandRunner:
         gl: Functions,
         state: StateCache,
         resource: Callable[[Handle], Any],
+        reader: PixelReader,
     ) -> None:
         self._gl = gl
         self._state = state
         self._get = resource
+        self._reader = reader
         self._target: GlFramebuffer | None = None
         self.uploaded = 0
-        self.read_seconds = 0.0
 
     def run(self, command: Command) -> None:
         """Execute one command."""
@@ -70,8 +69,9 @@ class CommandRunner:
                 self._get(texture).generate_mipmaps()
             case ResolveFramebuffer(source, target):
                 self._resolve(self._get(source), self._get(target))
-            case ReadPixels():
-                self._read_pixels(command)
+            case ReadPixels(framebuffer):
+                name = 0 if framebuffer is None else self._get(framebuffer).name
+                self._reader.read(command, name)
 
     def _bind_framebuffer(self, handle: Handle | None) -> None:
         self._state.scissor(None)
@@ -105,20 +105,3 @@ class CommandRunner:
         gl.BlitFramebuffer(
             *rectangle, *rectangle, c.COLOR_BUFFER_BIT, c.NEAREST
         )
-
-    def _read_pixels(self, command: ReadPixels) -> None:
-        gl = self._gl
-        # Reading waits for the drawing, whose time is the frame's.
-        gl.Finish()
-        handle = command.framebuffer
-        name = 0 if handle is None else self._get(handle).name
-        gl.BindFramebuffer(c.READ_FRAMEBUFFER, name)
-        if handle is not None:
-            gl.ReadBuffer(c.COLOR_ATTACHMENT0 + command.attachment)
-        _, _, width, height = command.rectangle
-        pixels = np.empty((height, width, command.channels), command.dtype)
-        layout, kind = c.readback_format(command.channels, command.dtype)
-        start = time.perf_counter()
-        gl.ReadPixels(*command.rectangle, layout, kind, pixels.ctypes.data)
-        self.read_seconds += time.perf_counter() - start
-        command.into.data = pixels

@@ -15,6 +15,7 @@ from ctypes import (
     c_ssize_t,
     c_ubyte,
     c_uint,
+    c_uint64,
     c_void_p,
 )
 from typing import Any
@@ -45,6 +46,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "CheckFramebufferStatus": (_UINT, _UINT),
     "ClearBufferfv": (None, _UINT, _INT, _POINTER),
     "ClipControl": (None, _UINT, _UINT),
+    "ClientWaitSync": (_UINT, _POINTER, _UINT, c_uint64),
     "ColorMask": (None, _BOOL, _BOOL, _BOOL, _BOOL),
     "CompressedTexImage2D": (
         None,
@@ -62,6 +64,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "DeleteFramebuffers": (None, _INT, _POINTER),
     "DeleteSamplers": (None, _INT, _POINTER),
     "DeleteTextures": (None, _INT, _POINTER),
+    "DeleteSync": (None, _POINTER),
     "DepthFunc": (None, _UINT),
     "DepthMask": (None, _BOOL),
     "Disable": (None, _UINT),
@@ -78,6 +81,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     ),
     "Enable": (None, _UINT),
     "EnableVertexAttribArray": (None, _UINT),
+    "FenceSync": (_POINTER, _UINT, _UINT),
     "Finish": (None,),
     "FramebufferTexture2D": (None, _UINT, _UINT, _UINT, _UINT, _INT),
     "FrontFace": (None, _UINT),

@@ -29,6 +29,7 @@ from moka.backend.gl_programs import (
     make_vertex_array,
     match_bindings,
 )
+from moka.backend.gl_readback import PixelReader
 from moka.backend.gl_state import StateCache
 from moka.backend.gl_textures import GlFramebuffer, GlTexture, SamplerCache
 from moka.backend.protocol import FrameCounters, TextureData
@@ -56,7 +57,9 @@ class ModernGLBackend:
 
     ``explain`` turns a driver's shader log into one line that names file
     and line; ``multi_draw`` and ``clip_control`` can be turned off to run as
-    on a driver of GL 3.3 that has neither.
+    on a driver of GL 3.3 that has neither. ``asynchronous`` is whether
+    pixels are read back while later frames are drawn, by default if a GPU
+    draws them.
     """
 
     def __init__(
@@ -66,6 +69,7 @@ class ModernGLBackend:
         *,
         multi_draw: bool = True,
         clip_control: bool = True,
+        asynchronous: bool | None = None,
     ) -> None:
         self._context = context
         self._ctx = cast(Any, context.gl)
@@ -96,7 +100,17 @@ class ModernGLBackend:
         self._uploaded = 0
         self._closed = False
         self._seconds: dict[str, float] = {}
-        self._runner = CommandRunner(self._gl, self._state, self._get)
+        if asynchronous is None:
+            asynchronous = not self.info.is_software
+        self._reader = PixelReader(
+            self._gl,
+            (lambda size: self._ctx.buffer(reserve=size))
+            if asynchronous
+            else None,
+        )
+        self._runner = CommandRunner(
+            self._gl, self._state, self._get, self._reader
+        )
         self._initialise()
 
     def create_buffer(
@@ -217,16 +231,17 @@ class ModernGLBackend:
         start = time.perf_counter()
         counters = self._execute(recording)
         spent = time.perf_counter() - start
-        reading = self._runner.read_seconds
+        reading = self._reader.seconds
         if reading:
             self.add_time("readback", reading)
         self.add_time(stage, spent - reading)
-        self._runner.read_seconds = 0.0
+        self._reader.seconds = 0.0
         return counters
 
     def _execute(self, recording: Recording) -> FrameCounters:
         counters = FrameCounters(bytes_uploaded=self._uploaded)
         self._uploaded = 0
+        begun = len(self._reader)
         self._state.counters = counters
         counters.draw_packets = len(recording.draws)
         batches = merge_draws(recording, self._meshes)
@@ -240,6 +255,8 @@ class ModernGLBackend:
                     self._draw(batches, batch, recording, counters)
             else:
                 self._runner.run(step)
+        # What frames before this one read, now that the GPU has work again.
+        self._reader.take(begun)
         counters.bytes_uploaded += self._uploaded + self._runner.uploaded
         self._uploaded = self._runner.uploaded = 0
         self._check_errors("frame")
@@ -268,6 +285,11 @@ class ModernGLBackend:
     def finish(self) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
         self._gl.Finish()
+        self._reader.take()
+
+    def poll(self) -> bool:
+        """See :class:`moka.backend.protocol.Backend`."""
+        return self._reader.take(timeout=0)
 
     def present(self) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
@@ -285,6 +307,7 @@ class ModernGLBackend:
                 if hasattr(resource, "release"):
                     resource.release()
             self._samplers.release()
+            self._reader.release()
         self._resources.clear()
         self._arrays.clear()
         self._context.close()

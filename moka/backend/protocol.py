@@ -50,6 +50,14 @@ class BackendInfo(Struct, frozen=True):
     multi_draw_indirect: bool = False
     compressed_formats: frozenset[PixelFormat] = frozenset()
 
+    @property
+    def is_software(self) -> bool:
+        """Whether the CPU draws: Mesa's and SwiftShader's rasterisers."""
+        name = self.renderer.lower()
+        return any(
+            each in name for each in ("llvmpipe", "softpipe", "swiftshader")
+        )
+
 
 class FrameCounters(Struct):
     """Work done and skipped while one recording was executed."""
@@ -115,6 +123,9 @@ class Backend(Protocol):
 
     def finish(self) -> None:
         """Return when the GPU has done all that was asked."""
+
+    def poll(self) -> bool:
+        """Take up pixels that have arrived; whether some still have to."""
 
     def present(self) -> None:
         """Show what was drawn into the window."""

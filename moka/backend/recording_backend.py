@@ -131,8 +131,8 @@ class RecordingBackend:
                 uploaded += len(step.data)
             elif isinstance(step, ReadPixels):
                 _, _, width, height = step.rectangle
-                step.into.data = np.zeros(
-                    (height, width, step.channels), step.dtype
+                step.into.arrived.set_result(
+                    np.zeros((height, width, step.channels), step.dtype)
                 )
         return FrameCounters(
             draw_packets=len(recording.draws),
@@ -158,6 +158,10 @@ class RecordingBackend:
 
     def finish(self) -> None:
         """There is nothing to wait for."""
+
+    def poll(self) -> bool:
+        """What was asked for has been read at once."""
+        return False
 
     def present(self) -> None:
         """Count the frame shown."""

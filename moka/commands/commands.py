@@ -6,6 +6,7 @@ so draws are rows of arrays (:mod:`moka.commands.draws`).
 Rectangles are in pixels from the lower left corner, as GL counts them.
 """
 
+from concurrent.futures import Future
 from typing import Any, TypeAlias
 
 from msgspec import Struct
@@ -92,15 +93,23 @@ class ResolveFramebuffer(Struct, frozen=True):
 class Readback:
     """Where the texels of a :class:`ReadPixels` arrive.
 
-    The render thread writes ``data``, an array (height, width, channels)
-    with the bottom row first; the caller reads it after the frame that holds
-    the command has been waited for.
+    ``arrived`` is done when they have: an array (height, width, channels)
+    with the bottom row first. That is so when the frame that holds the
+    command has been waited for, or the one after it has been executed.
     """
 
-    __slots__ = ("data",)
+    __slots__ = ("arrived",)
 
     def __init__(self) -> None:
-        self.data: NDArray[Any] | None = None
+        self.arrived: Future[NDArray[Any]] = Future()
+
+    @property
+    def data(self) -> NDArray[Any] | None:
+        """The texels; None as long as they have not arrived.
+
+        Raises what kept them from arriving.
+        """
+        return self.arrived.result() if self.arrived.done() else None
 
 
 class ReadPixels(Struct, frozen=True):

@@ -12,7 +12,7 @@ import concurrent.futures
 import itertools
 import time
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         TextureData,
     )
     from moka.commands.command_list import CommandList
+    from moka.commands.commands import Readback
     from moka.commands.descriptors import (
         BindGroupDescriptor,
         BufferDescriptor,
@@ -51,22 +52,37 @@ class Frame:
     """A submitted command list: wait for it, then read its counters."""
 
     def __init__(
-        self, thread: RenderThread, future: Future[FrameCounters]
+        self,
+        thread: RenderThread,
+        future: Future[FrameCounters],
+        reads: Sequence[Readback] = (),
     ) -> None:
         self._thread = thread
         self._future = future
+        self._arriving: list[Future[Any]] = [read.arrived for read in reads]
 
     @property
     def is_done(self) -> bool:
-        """Whether the render thread has executed it."""
-        return self._future.done()
+        """Whether it has been executed, and what it reads has arrived."""
+        return all(each.done() for each in (self._future, *self._arriving))
 
     def is_done_within(self, timeout: float) -> bool:
-        """Whether it has been executed, or is ``timeout`` seconds from now."""
-        done, _ = concurrent.futures.wait([self._future], timeout)
-        return bool(done)
+        """Whether that is so, or is ``timeout`` seconds from now."""
+        awaited = (self._future, *self._arriving)
+        return not concurrent.futures.wait(awaited, timeout).not_done
 
     def wait(self) -> FrameCounters:
+        """Return when that is so; raise what it raised.
+
+        To have pixels read while the GPU draws on, submit the next frame
+        before.
+        """
+        counters = self.wait_for_execution()
+        for each in self._arriving:
+            self._thread.wait(each)
+        return counters
+
+    def wait_for_execution(self) -> FrameCounters:
         """Return when it has been executed; raise what it raised."""
         return self._thread.wait(self._future)
 
@@ -256,17 +272,25 @@ class GraphicsDevice:
         work that is done once and needs no picture before it. Raises
         CommandError for handles that are destroyed or another device's.
         """
+        # Where there is a command list, this has been imported.
+        from moka.commands.commands import ReadPixels
+
         recording = commands.finish(sort=sort)
         for handles in recording.handles:
             if self._checked.get(handles) != self._releases:
                 self._check(handles)
         if paced and self._in_flight is not None:
-            self._in_flight.wait()
+            self._in_flight.wait_for_execution()
         frame = Frame(
             self._thread,
             self._thread.post(
                 lambda backend: backend.execute(recording, stage)
             ),
+            [
+                step.into
+                for step in recording.steps
+                if isinstance(step, ReadPixels)
+            ],
         )
         if paced:
             self._in_flight = frame

@@ -30,6 +30,8 @@ __all__ = ["RenderThread"]
 T = TypeVar("T")
 
 _POLL_SECONDS = 0.5
+# How often a thread without a job looks for pixels that are on their way.
+_TAKE_UP_SECONDS = 0.001
 
 
 class _Job(Generic[T]):
@@ -75,7 +77,7 @@ class _Worker:
             return
         self.opened.set_result(None)
         try:
-            while (job := self.jobs.get()) is not None:
+            while (job := self._next(backend)) is not None:
                 if self.failure is None:
                     self.failure = job.run(backend)
                 else:
@@ -87,6 +89,13 @@ class _Worker:
             with contextlib.suppress(Exception):
                 backend.close()
             self._refuse_rest()
+
+    def _next(self, backend: Backend) -> _Job[object] | None:
+        """The next job; pixels are taken up while there is none."""
+        while backend.poll():
+            with contextlib.suppress(queue.Empty):
+                return self.jobs.get(timeout=_TAKE_UP_SECONDS)
+        return self.jobs.get()
 
     def _refuse_rest(self) -> None:
         while True:
