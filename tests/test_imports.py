@@ -70,6 +70,8 @@ def test_a_headless_png_pays_for_nothing_else(tmp_path: Path) -> None:
     assert not loaded & (WINDOW | TOOLS | WRITER | {"OpenEXR"})
     # Nor for what the file does not have.
     modules = {
+        "moka.core.alpha_levels",
+        "moka.core.normal_levels",
         "moka.model.instances",
         "moka.model.lines",
         "moka.model.lods",

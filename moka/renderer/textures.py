@@ -161,6 +161,7 @@ class TexturePool:
         ]
         for _, needed in jobs:
             for decoder in needed:
+                decoder.is_spare = decoder.uses == 0
                 decoder.uses += 1
         for request, needed in jobs:
             self._pending[request] = self._workers.submit(
@@ -225,7 +226,9 @@ class TexturePool:
             # What the file has in an alpha of normals means nothing.
             texels = np.ascontiguousarray(texels[:, :, :3])
         if request.graft is not None:
-            texels = _grafted(texels, others[0], request.graft)
+            texels = _grafted(
+                texels, others[0], request.graft, spare=decoders[0].is_spare
+            )
         pixels = (
             _COLOUR_FORMATS[texels.shape[2]]
             if request.is_colour
@@ -296,12 +299,13 @@ def _finish(request: TextureRequest, texels: NDArray[Any]) -> "Finish | None":
 class _Decoder:
     """Decodes an image once, in whichever worker asks first.
 
-    Forgets it when all ``uses`` have asked.
+    Forgets it when all ``uses`` have asked; ``is_spare`` if it was only one.
     """
 
     def __init__(self, image: EncodedImage) -> None:
         self.image = image
         self.uses = 0
+        self.is_spare = False
         self._lock = threading.Lock()
         self._texels: NDArray[Any] | None = None
 
@@ -319,9 +323,12 @@ class _Decoder:
 
 
 def _grafted(
-    texels: NDArray[Any], other: NDArray[Any], graft: Graft
+    texels: NDArray[Any], other: NDArray[Any], graft: Graft, *, spare: bool
 ) -> NDArray[Any]:
-    """Texels of which one channel is that of another image of their size."""
+    """Texels of which one channel is that of another image of their size.
+
+    ``spare`` ones may be changed.
+    """
     from moka.core.decode import with_alpha
 
     # In grey images red, green and blue are one.
@@ -331,8 +338,12 @@ def _grafted(
     if texels.shape[2] == 3 and texels.dtype == np.uint8:
         texels = with_alpha(texels)
     stored = max(texels.shape[2], channels)
-    joined = np.empty((*texels.shape[:2], stored), kind)
-    joined[:, :, : texels.shape[2]] = _widened(texels, kind)
+    fits = texels.dtype == kind and texels.shape[2] == stored
+    if spare and fits and texels.flags.writeable:
+        joined = texels
+    else:
+        joined = np.empty((*texels.shape[:2], stored), kind)
+        joined[:, :, : texels.shape[2]] = _widened(texels, kind)
     joined[:, :, graft.into] = _widened(channel, kind)
     # Without what is only padding, which is found again.
     return joined[:, :, :channels]
