@@ -188,3 +188,12 @@ def test_commands_are_understood(path: Path) -> None:
             if getattr(parsed, "frames", None) or parsed.turntable:
                 words += ["--frames", "2"]
         assert main(words) in (0, 1), text
+
+
+def test_what_the_report_is_compared_with_is_there() -> None:
+    """Each path that the page names exists, also where it shortens one."""
+    text = (ROOT / "docs" / "parity.md").read_text(encoding="utf-8")
+    paths = re.findall(r"`((?:moka|shaders|tests|examples)/[\w/.]+)`", text)
+    assert len(paths) > 40
+    for path in paths:
+        assert (ROOT / path).exists(), path
