@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from moka.app.window import Window
     from moka.commands.command_list import CommandList
     from moka.core.image import Image
-    from moka.graphics.device import GraphicsDevice
+    from moka.graphics.device import Frame, GraphicsDevice
     from moka.renderer.renderer import Renderer
 
 __all__ = ["App", "GameTime"]
@@ -39,7 +39,8 @@ class App:
     ``camera`` are there from the start and may be replaced. ``size`` is the
     picture's width and height in pixels. ``input`` is what is held and
     pressed, ``window`` the window; a headless run has None, and leaves the
-    last frame in ``image``.
+    last frame in ``image``. ``frame`` is the last one that a window's loop
+    has submitted; when it is done, its counters tell of the work.
 
     These may be set at any time, or in the class: ``fixed_step``, seconds
     between two updates, or None for one before each frame; ``paused``, while
@@ -55,6 +56,7 @@ class App:
     renderer: "Renderer"
     window: "Window | None" = None
     image: "Image | None" = None
+    frame: "Frame | None" = None
 
     fixed_step: float | None = None
     paused: bool = False

@@ -206,7 +206,7 @@ def _loop(app: App, window: "Window", frames: int | None) -> None:
             # A long frame before this one: the window answers all the same.
             for event in window.poll():
                 _dispatch(app, event)
-        app.device.submit_and_present(commands)
+        app.frame = app.device.submit_and_present(commands)
         before = now
         due = now + 1 / app.frame_limit if app.frame_limit else now
         is_wanted = False

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from ctypes import byref, c_float
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from moka.backend import gl_constants as c
 from moka.backend.gl_functions import Functions
@@ -20,8 +20,12 @@ from moka.commands.commands import (
     ResolveFramebuffer,
     SetScissor,
     SetViewport,
+    Timestamp,
 )
 from moka.commands.handles import Handle
+
+if TYPE_CHECKING:
+    from moka.backend.gl_timestamps import TimestampQueries
 
 __all__ = ["CommandRunner"]
 
@@ -46,6 +50,7 @@ class CommandRunner:
         self._get = resource
         self._reader = reader
         self._target: GlFramebuffer | None = None
+        self._timestamps: TimestampQueries | None = None
         self.uploaded = 0
 
     def run(self, command: Command) -> None:
@@ -72,6 +77,25 @@ class CommandRunner:
             case ReadPixels(framebuffer):
                 name = 0 if framebuffer is None else self._get(framebuffer).name
                 self._reader.read(command, name)
+            case Timestamp():
+                self._timestamp(command)
+
+    def collect_times(self) -> None:
+        """Hand over the times that the GPU has told; waits for none."""
+        if self._timestamps is not None:
+            self._timestamps.collect()
+
+    def release(self) -> None:
+        """Delete what was made to run commands."""
+        if self._timestamps is not None:
+            self._timestamps.release()
+
+    def _timestamp(self, command: Timestamp) -> None:
+        if self._timestamps is None:
+            from moka.backend.gl_timestamps import TimestampQueries
+
+            self._timestamps = TimestampQueries(self._gl)
+        self._timestamps.record(command)
 
     def _bind_framebuffer(self, handle: Handle | None) -> None:
         self._state.scissor(None)

@@ -10,6 +10,7 @@ texture or compiles at the first draw. All such calls stand here.
 
 from collections.abc import Callable
 from ctypes import (
+    addressof,
     c_float,
     c_int,
     c_ssize_t,
@@ -19,6 +20,8 @@ from ctypes import (
     c_void_p,
 )
 from typing import Any
+
+from moka.backend import gl_constants as c
 
 __all__ = ["Functions"]
 
@@ -62,6 +65,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "CullFace": (None, _UINT),
     "DeleteBuffers": (None, _INT, _POINTER),
     "DeleteFramebuffers": (None, _INT, _POINTER),
+    "DeleteQueries": (None, _INT, _POINTER),
     "DeleteSamplers": (None, _INT, _POINTER),
     "DeleteTextures": (None, _INT, _POINTER),
     "DeleteSync": (None, _POINTER),
@@ -87,10 +91,13 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "FrontFace": (None, _UINT),
     "GenBuffers": (None, _INT, _POINTER),
     "GenFramebuffers": (None, _INT, _POINTER),
+    "GenQueries": (None, _INT, _POINTER),
     "GenSamplers": (None, _INT, _POINTER),
     "GenTextures": (None, _INT, _POINTER),
     "GenerateMipmap": (None, _UINT),
     "GetBufferSubData": (None, _UINT, _SIZE, _SIZE, _POINTER),
+    "GetQueryObjectiv": (None, _UINT, _UINT, _POINTER),
+    "GetQueryObjectui64v": (None, _UINT, _UINT, _POINTER),
     "GetTexImage": (None, _UINT, _INT, _UINT, _UINT, _POINTER),
     "MultiDrawArraysIndirect": (None, _UINT, _POINTER, _INT, _INT),
     "MultiDrawElementsIndirect": (
@@ -103,6 +110,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     ),
     "PixelStorei": (None, _UINT, _INT),
     "PolygonMode": (None, _UINT, _UINT),
+    "QueryCounter": (None, _UINT, _UINT),
     "ReadBuffer": (None, _UINT),
     "ReadPixels": (None, *[_INT] * 4, _UINT, _UINT, _POINTER),
     "SamplerParameterf": (None, _UINT, _UINT, _FLOAT),
@@ -167,15 +175,21 @@ class Functions:
     def make(self, kind: str) -> int:
         """The name of one new object: ``make("Textures")``."""
         name = c_uint()
-        getattr(self, "Gen" + kind)(1, _address(name))
+        getattr(self, "Gen" + kind)(1, addressof(name))
         return name.value
+
+    def is_available(self, query: int) -> bool:
+        """Whether the result of a query can be had without waiting."""
+        value = c_int()
+        self.GetQueryObjectiv(query, c.QUERY_RESULT_AVAILABLE, addressof(value))
+        return bool(value.value)
+
+    def query_result(self, query: int) -> int:
+        """The result of a query; waits for it."""
+        value = c_uint64()
+        self.GetQueryObjectui64v(query, c.QUERY_RESULT, addressof(value))
+        return value.value
 
     def delete(self, kind: str, name: int) -> None:
         """Delete one object: ``delete("Textures", name)``."""
-        getattr(self, "Delete" + kind)(1, _address(c_uint(name)))
-
-
-def _address(value: c_uint) -> Any:
-    from ctypes import addressof
-
-    return addressof(value)
+        getattr(self, "Delete" + kind)(1, addressof(c_uint(name)))

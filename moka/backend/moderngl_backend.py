@@ -239,6 +239,7 @@ class ModernGLBackend:
         return counters
 
     def _execute(self, recording: Recording) -> FrameCounters:
+        self._runner.collect_times()
         counters = FrameCounters(bytes_uploaded=self._uploaded)
         self._uploaded = 0
         begun = len(self._reader)
@@ -308,6 +309,7 @@ class ModernGLBackend:
                     resource.release()
             self._samplers.release()
             self._reader.release()
+            self._runner.release()
         self._resources.clear()
         self._arrays.clear()
         self._context.close()

@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 from moka.backend.batching import Batches, MeshTable, merge_draws
 from moka.backend.protocol import BackendInfo, FrameCounters, TextureData
 from moka.commands.command_list import Recording
-from moka.commands.commands import FillBuffer, FillTexture, ReadPixels
+from moka.commands.commands import (
+    FillBuffer,
+    FillTexture,
+    ReadPixels,
+    Timestamp,
+)
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,
@@ -32,7 +37,7 @@ class RecordingBackend:
 
     ``resources`` maps live handles to their descriptors, ``frames`` holds
     the executed recordings, ``batches`` how a GPU backend would have merged
-    their draws. What is read back is zero.
+    their draws. What is read back is zero, and so are times.
     """
 
     def __init__(self, info: BackendInfo | None = None) -> None:
@@ -134,6 +139,9 @@ class RecordingBackend:
                 step.into.arrived.set_result(
                     np.zeros((height, width, step.channels), step.dtype)
                 )
+            elif isinstance(step, Timestamp):
+                marks = step.into.marks or []
+                step.into.marks = [*marks, (step.label, 0)]
         return FrameCounters(
             draw_packets=len(recording.draws),
             gl_draws=len(batches.program),

@@ -24,6 +24,8 @@ from moka.commands.commands import (
     ResolveFramebuffer,
     SetScissor,
     SetViewport,
+    Timestamp,
+    Timestamps,
 )
 from moka.commands.descriptors import RasterState
 from moka.commands.draws import (
@@ -142,6 +144,10 @@ class CommandBuffer:
             )
         )
         return readback
+
+    def timestamp(self, label: str, into: Timestamps) -> None:
+        """Have the GPU's clock read here; see :class:`Timestamp`."""
+        self._entries.append(Timestamp(label, into))
 
     def draw(
         self,
@@ -353,6 +359,16 @@ class CommandList:
             channels=channels,
             dtype=dtype,
         )
+
+    def timestamp(
+        self,
+        label: str,
+        into: Timestamps,
+        *,
+        key: SortKey | int | None = None,
+    ) -> None:
+        """:meth:`CommandBuffer.timestamp` in a buffer of its own."""
+        self.command_buffer(key).timestamp(label, into)
 
     def draw(
         self,

@@ -7,6 +7,7 @@ Rectangles are in pixels from the lower left corner, as GL counts them.
 """
 
 from concurrent.futures import Future
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 from msgspec import Struct
@@ -26,6 +27,8 @@ __all__ = [
     "ResolveFramebuffer",
     "SetScissor",
     "SetViewport",
+    "Timestamp",
+    "Timestamps",
 ]
 
 
@@ -127,6 +130,40 @@ class ReadPixels(Struct, frozen=True):
     dtype: str = "f4"
 
 
+class Timestamps:
+    """Where the times of the :class:`Timestamp` of one recording arrive.
+
+    The render thread writes ``marks``, labels and nanoseconds in the order
+    of the commands, some frames later and without waiting for the GPU. None
+    until then, and for ever where the GPU has no clock.
+    """
+
+    __slots__ = ("marks",)
+
+    def __init__(self) -> None:
+        self.marks: list[tuple[str, int]] | None = None
+
+    @property
+    def seconds(self) -> dict[str, float] | None:
+        """By label, the time from each mark to the next, in seconds.
+
+        Marks of one label add up; the last one only ends what is before it.
+        """
+        if self.marks is None:
+            return None
+        spent: dict[str, float] = {}
+        for (label, begin), (_, end) in pairwise(self.marks):
+            spent[label] = spent.get(label, 0.0) + 1e-9 * (end - begin)
+        return spent
+
+
+class Timestamp(Struct, frozen=True):
+    """Note when the GPU has done all that was asked of it before."""
+
+    label: str
+    into: Timestamps
+
+
 Command: TypeAlias = (
     BindFramebuffer
     | Clear
@@ -137,4 +174,5 @@ Command: TypeAlias = (
     | GenerateMipmaps
     | ResolveFramebuffer
     | ReadPixels
+    | Timestamp
 )
