@@ -40,7 +40,8 @@ class App:
     picture's width and height in pixels. ``input`` is what is held and
     pressed, ``window`` the window; a headless run has None, and leaves the
     last frame in ``image``. ``frame`` is the last one that a window's loop
-    has submitted; when it is done, its counters tell of the work.
+    has submitted: when it is done, its counters tell of the work. Before
+    it the loop has ``waited``, in seconds, for the one before.
 
     These may be set at any time, or in the class: ``fixed_step``, seconds
     between two updates, or None for one before each frame; ``paused``, while
@@ -57,6 +58,7 @@ class App:
     window: "Window | None" = None
     image: "Image | None" = None
     frame: "Frame | None" = None
+    waited: float = 0.0
 
     fixed_step: float | None = None
     paused: bool = False

@@ -202,11 +202,13 @@ def _loop(app: App, window: "Window", frames: int | None) -> None:
             continue
         app.input.gamepads = window.gamepads
         commands = _record(app, clock, now - before if number else 0.0)
+        recorded = time.perf_counter()
         while not app.device.is_ready(_ANSWER):
             # A long frame before this one: the window answers all the same.
             for event in window.poll():
                 _dispatch(app, event)
         app.frame = app.device.submit_and_present(commands)
+        app.waited = time.perf_counter() - recorded
         before = now
         due = now + 1 / app.frame_limit if app.frame_limit else now
         is_wanted = False

@@ -82,10 +82,17 @@ class Renderer:
     :meth:`read_display` reads. ``statistics`` collects times and counters.
     ``cache`` is where preintegrated lighting is looked for, and written to
     by :meth:`keep_lighting`. ``materials`` is a pool of this device in which
-    images may be decoding already; the renderer closes it.
+    images may be decoding already; the renderer closes it. One that is
+    ``beside`` another of its device shares programs, geometry and textures
+    with it, and closes nothing; both are to draw the same scene with the
+    same :attr:`RenderSettings.textures`, each into command lists of its own.
 
     With ``shows_stops`` the display has a colour for each stop of luminance
-    in the place of what the picture looks like.
+    in the place of what the picture looks like. Only the pixels of ``area``
+    (x, y, width, height from the lower left) are drawn, None is all;
+    reference lighting goes on with all of them, so that its samples stay
+    when the area changes. With ``at_centres`` its samples all see the centre
+    of their pixel, as a mode without multisampling does.
     """
 
     def __init__(
@@ -98,21 +105,32 @@ class Renderer:
         statistics: Statistics | None = None,
         cache: DiskCache | None = None,
         materials: MaterialPool | None = None,
+        beside: "Renderer | None" = None,
     ) -> None:
         self.device = device
         self.size = size
         self.settings = settings or RenderSettings()
         self.statistics = statistics or Statistics()
         self.shows_stops = False
+        self.area: tuple[int, int, int, int] | None = None
+        self.at_centres = False
         self._to_window = to_window
-        self._passes = passes = FullscreenPasses(device)
+        self._is_guest = beside is not None
+        if beside is None:
+            self._passes = FullscreenPasses(device)
+            self._programs = ProgramCache(device)
+            self._geometry = GeometryPool(device)
+            self._materials = materials or MaterialPool(device, self.statistics)
+        else:
+            self._passes = beside._passes
+            self._programs = beside._programs
+            self._geometry = beside._geometry
+            self._materials = beside._materials
+        passes = self._passes
         self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)
         self._sky_map = SkyMap(device)
         self._sources = LightSources(device, passes, self.statistics, cache)
-        self._programs = ProgramCache(device)
-        self._geometry = GeometryPool(device)
-        self._materials = materials or MaterialPool(device, self.statistics)
         self._frame = device.create_buffer(
             BufferDescriptor(
                 BufferUsage.UNIFORM, FRAME.size, dynamic=True, label="frame"
@@ -131,7 +149,16 @@ class Renderer:
 
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
-        self._materials.close()
+        if not self._is_guest:
+            self._materials.close()
+
+    def release_targets(self) -> None:
+        """Give back what pictures are drawn into, until the next one."""
+        if self._targets is not None:
+            self._screen.forget()
+            self._progressive.forget()
+            self._targets.destroy()
+            self._targets = None
 
     def reload_shaders(self) -> int:
         """Compile the shaders whose files have changed; says how many.
@@ -195,7 +222,8 @@ class Renderer:
                 self.settings.sample_budget,
                 self.settings.max_error,
             )
-            view = view.jittered(self._progressive.jitter, self.size)
+            if not self.at_centres:
+                view = view.jittered(self._progressive.jitter, self.size)
         if not self._accumulates or not self._progressive.is_finished:
             self._draw_scene(
                 scene, view, lights, visible, targets, prepared, commands
@@ -472,10 +500,7 @@ class Renderer:
             samples = 1  # Edges are smooth by another point in every frame.
         wanted = (self.size, samples, float_output)
         if self._targets is None or self._targets.made_for != wanted:
-            if self._targets is not None:
-                self._screen.forget()
-                self._progressive.forget()
-                self._targets.destroy()
+            self.release_targets()
             self._targets = Targets(
                 self.device, self.size, samples, float_output=float_output
             )
@@ -511,6 +536,8 @@ class Renderer:
         setup.clear((0, 0, 0, float(is_dark)), 0.0 if is_reversed else 1.0)
         if self._accumulates:
             self._progressive.mask(setup, 1.0 if is_reversed else 0.0)
+        elif self.area is not None:
+            setup.scissor(self.area)
         states = np.array(
             [commands.state_index(state) for state in prepared.states],
             np.uint32,
@@ -607,6 +634,7 @@ class Renderer:
             exposure=self.settings.exposure,
             background=None if isinstance(colour, str) else colour,
             window=self.size if self._to_window else None,
+            area=self.area,
         )
 
     def _count(

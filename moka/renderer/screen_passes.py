@@ -174,13 +174,14 @@ class ScreenPasses:
         exposure: float,
         background: tuple[float, float, float] | None,
         window: tuple[int, int] | None,
+        area: tuple[int, int, int, int] | None = None,
     ) -> None:
         """Average the samples, expose, tone map and encode.
 
         ``sky`` is as in :meth:`resolve`. ``background`` is a linear display
         colour that shows through where coverage is below 1; None keeps
         alpha. ``window`` is the size of the window to draw into instead of
-        the display target.
+        the display target; nothing is written outside of ``area``.
         """
         values = _TONE_MAP.pack(
             {
@@ -200,6 +201,7 @@ class ScreenPasses:
         else:
             buffer.bind_framebuffer(None)
             buffer.viewport(0, 0, *window)
+        buffer.scissor(area)
         buffer.draw(
             self._passes.program("tone_map.frag", defines),
             self._passes.triangle,

@@ -29,7 +29,7 @@ from moka.app.events import (
 from moka.app.keys import Key, Modifiers, MouseButton
 from moka.app.render_session import RenderRequest
 from moka.commands.command_list import CommandList
-from moka.commands.commands import Readback
+from moka.commands.commands import Readback, Timestamps
 from moka.commands.sort_key import SortKey
 from moka.core.errors import MokaError
 from moka.core.image import Image
@@ -41,15 +41,20 @@ from moka.scene.camera import Camera
 from moka.scene.camera_choice import Orbit, choose_camera, parse_camera
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
+from moka.ui.comparison import Comparison
 from moka.ui.file_watcher import FileWatcher
+from moka.ui.frame_times import PASS_INTERFACE, FrameTimes, mark_passes
 from moka.ui.interface import Interface
+from moka.ui.lighting_error import SAMPLES, ErrorMeasurement
 from moka.ui.orbit_controls import OrbitControls
+from moka.ui.panels.comparison import ComparisonPanel
 from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
 from moka.ui.panels.help import draw_help
 from moka.ui.panels.inspector import InspectorPanel
 from moka.ui.panels.model import ModelPanel
 from moka.ui.panels.panel import Panel
 from moka.ui.panels.picture import PicturePanel
+from moka.ui.panels.profiler import ProfilerPanel
 from moka.ui.panels.scene_tree import SceneTreePanel
 from moka.ui.panels.timeline import draw_timeline, toggle_playing
 from moka.ui.panels.view import ViewPanel
@@ -57,9 +62,6 @@ from moka.ui.picking import begin_pick, finish_pick
 from moka.ui.selection import draw_box
 
 __all__ = ["Viewer"]
-
-# Behind every pass of the renderer.
-PASS_INTERFACE = 7
 
 # Panels follow the pointer a frame later, and sizes of text one more.
 _FRAMES_TO_SETTLE = 3
@@ -85,7 +87,9 @@ class Viewer(App):
     ``controls`` move the camera; ``model`` is what is open, None before it
     has been read; ``selection`` the row of a node of it. ``debug_view`` is
     a name of :data:`moka.renderer.debug_view.DEBUG_VIEWS` or None. ``error``
-    is the last thing that went wrong, for a person to read.
+    is the last thing that went wrong, for a person to read. ``comparison``
+    is what stands beside the picture, ``measurement`` the last one of the
+    light's error, ``times`` where the time of frames goes.
     """
 
     continuous = False
@@ -108,9 +112,14 @@ class Viewer(App):
             EnvironmentPanel(),
             LightingPanel(),
             ViewPanel(),
+            ComparisonPanel(),
             SceneTreePanel(),
             InspectorPanel(),
+            ProfilerPanel(),
         ]
+        self.times = FrameTimes()
+        self.comparison = Comparison()
+        self.measurement: ErrorMeasurement | None = None
         self.interface: Interface
         self._work = BackgroundWork(self.request_redraw)
         self._watcher = FileWatcher(self._files_changed)
@@ -159,8 +168,12 @@ class Viewer(App):
         """Take over what the background has done, and fly."""
         try:
             self._work.poll()
+            if self.measurement is not None:
+                self.measurement.step()
         except MokaError as error:
             self.error = str(error)
+            if self.measurement and not self.measurement.is_done:
+                self.measurement = None
         self._reload()
         self._take_reads()
         self._fly(time.delta)
@@ -168,7 +181,10 @@ class Viewer(App):
             self.request_redraw()
         if self._settling or self._reads or self._work.doing:
             self._settling = max(self._settling - 1, 0)
-        if self._settling or self._reads:
+        is_measuring = self.measurement and not self.measurement.is_done
+        if self._settling or self._reads or is_measuring:
+            self.request_redraw()
+        if self.debug_view is None and not self.comparison.is_complete:
             self.request_redraw()
 
     def draw(self, time: GameTime, commands: CommandList) -> None:
@@ -176,23 +192,43 @@ class Viewer(App):
         size = self._window_size()
         pixels = self.window.framebuffer_size if self.window else self.size
         self.renderer.size = self._picture_size(size, pixels)
-        try:
-            self._draw_scene(commands)
-        except MokaError as error:
-            self.error = str(error)
-            self._remove_model()
-            self._draw_scene(commands)
-        self._read_picture(commands)
-        self._pick(commands, size)
-        with self.interface.frame(size, time.delta) as imgui:
+        self.times.add("wait", self.waited)
+        places = self.times.begin_frame()
+        with self.times.stage("scene"):
+            if places:
+                mark_passes(commands, places[0])
+            self._draw_picture(commands, places[1] if places else None)
+            self._read_picture(commands)
+            self._pick(commands, size)
+        with (
+            self.times.stage("panels"),
+            self.interface.frame(size, time.delta) as imgui,
+        ):
             self._draw_interface(imgui, size)
-        self.interface.draw(commands, SortKey(PASS_INTERFACE), None, pixels)
+        with self.times.stage("draw panels"):
+            self.interface.draw(commands, SortKey(PASS_INTERFACE), None, pixels)
 
     def close(self) -> None:
         """End the work in the background."""
         self._watcher.close()
         self._work.close()
+        for panel in self.panels:
+            panel.close()
         self.interface.close()
+
+    def _draw_picture(
+        self, commands: CommandList, times: Timestamps | None
+    ) -> None:
+        try:
+            if self.debug_view is None and self.window is not None:
+                self.comparison.draw(
+                    self.renderer, self.scene, self.camera, None, times
+                )
+            self._draw_scene(commands)
+        except MokaError as error:
+            self.error = str(error)
+            self._remove_model()
+            self._draw_scene(commands)
 
     def _draw_scene(self, commands: CommandList) -> None:
         if self.debug_view is None:
@@ -287,6 +323,13 @@ class Viewer(App):
         self._wants_picture = Path(path)
         self.request_redraw()
 
+    def measure_error(self) -> None:
+        """Begin to compare the light of this view with reference lighting."""
+        self.measurement = ErrorMeasurement(
+            self.renderer, self.scene, self.camera, SAMPLES
+        )
+        self.request_redraw()
+
     def request(self) -> RenderRequest:
         """What would render the picture that is seen now."""
         controls = self.controls
@@ -351,8 +394,11 @@ class Viewer(App):
                 self.frame_everything()
 
     def _click(self, event: MouseButtonEvent) -> None:
+        self.comparison.is_dragged = False
         if event.pressed:
             is_ours = not self.interface.wants_pointer
+            if is_ours and self.comparison.take(event.x, self._area()[0]):
+                return
             self._pressed_at = (event.x, event.y) if is_ours else None
             return
         pressed, self._pressed_at = self._pressed_at, None
@@ -368,7 +414,9 @@ class Viewer(App):
         mouse = self.input.mouse
         height = self._window_size()[1]
         across, down = event.dx / height, event.dy / height
-        if mouse.is_down(MouseButton.LEFT):
+        if self.comparison.is_dragged:
+            self.comparison.drag(event.x, self._area()[0])
+        elif mouse.is_down(MouseButton.LEFT):
             self.controls.orbit(across, down)
         elif mouse.is_down(MouseButton.RIGHT) or mouse.is_down(
             MouseButton.MIDDLE
@@ -423,6 +471,11 @@ class Viewer(App):
         """In its own coordinates, which are those of events and panels."""
         width, height = self.window.size if self.window else self.size
         return max(width, 1), max(height, 1)
+
+    def _area(self) -> tuple[int, int]:
+        """What the picture takes of the window."""
+        width, height = self._window_size()
+        return width - self._column_width(), height
 
     def _column_width(self) -> int:
         """What the panels take of the window's width."""
@@ -531,6 +584,8 @@ class Viewer(App):
         if any(path.is_relative_to(shader_folder()) for path in changed):
             try:
                 self.renderer.reload_shaders()
+                if self.comparison.renderer is not None:
+                    self.comparison.renderer.reload_shaders()
                 self.error = None
             except MokaError as error:
                 self.error = str(error)
@@ -629,12 +684,13 @@ class Viewer(App):
         if self.model is not None and self.selection is not None:
             box = self._bounds_of(self.selection)
             if box is not None:
-                area = (size[0] - self._column_width(), size[1])
-                draw_box(imgui, box, self.camera, area)
+                draw_box(imgui, box, self.camera, self._area())
+        if self.debug_view is None:
+            here = f"{self.settings.ibl}, {self.settings.brdf}"
+            self.comparison.draw_divider(imgui, self._area(), here)
         if self.shows_panels:
             self._draw_column(imgui, size)
-            area = (size[0] - self._column_width(), size[1])
-            draw_timeline(imgui, self, area)
+            draw_timeline(imgui, self, self._area())
         self.shows_help = draw_help(imgui, is_open=self.shows_help)
         self._draw_state(imgui, size)
 

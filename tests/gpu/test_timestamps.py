@@ -8,7 +8,7 @@ from moka.commands.commands import Timestamps
 from moka.commands.descriptors import CullMode, RasterState
 from moka.commands.sort_key import SortKey
 from moka.graphics.device import GraphicsDevice
-from tests.support.drawing import Canvas, number_program, nothing_bound, square
+from tests.support.drawing import Canvas, nothing_bound, number_program, square
 
 pytestmark = pytest.mark.gpu
 

@@ -271,3 +271,70 @@ def test_shaders_that_change_are_compiled_again(
         watch(story)
     finally:
         forget_shaders()
+
+
+def test_another_picture_stands_beside_it(watch: Watch) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        box = (0, 0, *SIZE)
+        person.wait("a picture", lambda: is_red(person.look(box)).any())
+        width = viewer.renderer.size[0]
+        before = person.look(box)[:, :width].copy()
+        # Light that surfaces reflect at their face is not red.
+        viewer.comparison.choice = "specular light"
+        viewer.request_redraw()
+        half = width // 2
+
+        def is_split() -> bool:
+            found = is_red(person.look(box))
+            return (
+                found[:, : half - 4].any()
+                and not found[:, half + 4 : width].any()
+            )
+
+        person.wait("a grey half", is_split)
+        yaw = viewer.controls.yaw
+        person.act(f"mousemove {half} 100")
+        person.wait(
+            "the pointer",
+            lambda: (
+                viewer.input.mouse.position == (half, 100)
+                and not viewer._settling
+            ),
+        )
+        person.act("mousedown 1")
+        person.act(f"mousemove {width - 20} 100")
+        person.act("mouseup 1")
+        person.wait("a drag", lambda: viewer.comparison.divider > 0.8)
+        assert viewer.controls.yaw == yaw
+        person.wait(
+            "the whole cube", lambda: is_red(person.look(box))[:, half:].any()
+        )
+        viewer.comparison.choice = None
+        viewer.request_redraw()
+        person.wait(
+            "one picture",
+            lambda: bool((person.look(box)[:, :width] == before).all()),
+        )
+
+    watch(story)
+
+
+def test_the_profiler_shows_where_time_goes(watch: Watch) -> None:
+    def story(person: Person, viewer: Viewer) -> None:
+        for panel in viewer.panels:
+            panel.starts_open = panel.title == "Profiler"
+        viewer.event(DropEvent(()))
+        person.act("mousemove 60 60")
+        person.act("mousemove 70 60")
+        person.wait("times of the CPU", lambda: bool(viewer.times.cpu.series))
+
+        def has_gpu() -> bool:
+            viewer.request_redraw()
+            return "scene" in viewer.times.gpu.series
+
+        person.wait("times of the GPU", has_gpu)
+        assert viewer.times.gpu.mean("scene", 1) > 0.0
+        assert viewer.frame is not None
+        assert viewer.frame.wait().gl_draws > 0
+
+    watch(story)

@@ -25,3 +25,6 @@ class Panel(ABC):
 
         ``imgui`` is the module; between a header and the next one.
         """
+
+    def close(self) -> None:  # noqa: B027
+        """Called once at the end."""
