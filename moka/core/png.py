@@ -2,8 +2,10 @@
 
 Rendering one picture should not be followed by a long wait for its file:
 every row gets the Average filter, which needs no search for the best one,
-and bands of rows are deflated in parallel. With two cores that takes less
-than half the time of Pillow at its fastest, for files 6 % larger.
+bands of rows are deflated in parallel, and of earlier bytes deflate looks for
+the last one alone (Z_RLE): a tenth faster than at level 1 otherwise, and 4 to
+5 % smaller for what a renderer draws. With two cores that takes half the time
+of Pillow at its fastest, for files of its size, from 5 % less to 5 % more.
 (Portable Network Graphics specification, third edition, W3C 2025.)
 """
 
@@ -95,7 +97,9 @@ def _compress(pixels: NDArray[np.uint8]) -> bytes:
     edges = [height * band // bands for band in range(bands + 1)]
 
     def compress(band: int) -> tuple[bytes, int, int]:
-        deflate = zlib.compressobj(level=1, wbits=-15, memLevel=9)
+        deflate = zlib.compressobj(
+            level=1, wbits=-15, memLevel=9, strategy=zlib.Z_RLE
+        )
         parts, checksum, size = [], 1, 0
         for start in range(edges[band], edges[band + 1], _BLOCK):
             stop = min(start + _BLOCK, edges[band + 1])
