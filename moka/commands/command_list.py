@@ -28,6 +28,13 @@ from moka.commands.commands import (
     Timestamps,
 )
 from moka.commands.descriptors import RasterState
+from moka.commands.draw_arrays import (
+    concatenate,
+    gather_instances,
+    join,
+    part,
+    take,
+)
 from moka.commands.draws import (
     DRAW,
     INSTANCE,
@@ -167,8 +174,9 @@ class CommandBuffer:
         row["bind_group"] = self._use(bind_group, ResourceKind.BIND_GROUP)
         row["state"] = owner.state_index(state or RasterState())
         row["instance_count"] = len(instances)
+        piece = row.copy(), instances
         row["first_instance"] = owner._add_instances(instances)
-        self._entries.append(owner._add_draws(row))
+        self._entries.append(owner._add_draws(row, piece))
 
     def _use(
         self, handle: Handle | None, kind: ResourceKind | None = None
@@ -199,6 +207,7 @@ class CommandList:
         self._in_order = False  # There is one bulk and it is sorted.
         self._draws: list[Draws] = []
         self._draw_count = 0
+        self._pieces: dict[int, tuple[Draws, Instances]] = {}
         self._instances: list[Instances] = []
         self._instance_count = 0
         self._states: dict[RasterState, int] = {}
@@ -257,11 +266,12 @@ class CommandList:
             raise CommandError(
                 "draws: a row names instances that are not there"
             )
+        piece = rows, instances
         if self._instance_count:
             rows = rows.copy()
             rows["first_instance"] += np.uint32(self._instance_count)
         self._add_instances(instances)
-        span = self._add_draws(rows)
+        span = self._add_draws(rows, piece)
         self._bulk.append((self._sequence, span.start, span.stop))
         self._in_order = in_order and len(self._bulk) == 1
         self._sequence += len(rows)
@@ -389,12 +399,12 @@ class CommandList:
         """What a backend executes, in key order or as recorded."""
         if sort and self._in_order:
             return self._insert_buffers()
-        draws = _concatenate(self._draws, DRAW)
+        draws = concatenate(self._draws, DRAW)
         order = self._order(draws["key"], sort)
         steps, rows = self._steps(order)
-        draws = _take(draws, rows)
-        instances = _gather_instances(
-            draws, _concatenate(self._instances, INSTANCE)
+        draws = take(draws, rows)
+        instances = gather_instances(
+            draws, concatenate(self._instances, INSTANCE)
         )
         return self._recording(steps, draws, instances)
 
@@ -414,48 +424,45 @@ class CommandList:
 
     def _insert_buffers(self) -> Recording:
         """The buffers placed among the rows of the one, sorted, bulk."""
-        ((sequence, start, stop),) = self._bulk
-        draws = _concatenate(self._draws, DRAW)
-        instances = _concatenate(self._instances, INSTANCE)
-        keys = np.ascontiguousarray(draws["key"][start:stop])
+        ((sequence, start, _),) = self._bulk
+        bulk = self._pieces[start]
+        keys = np.ascontiguousarray(bulk[0]["key"])
         steps: list[Command | DrawSpan] = []
-        spans: list[DrawSpan] = []
+        pieces: list[tuple[Draws, Instances]] = []
         placed = 0
 
-        def place(span: DrawSpan) -> None:
+        def place(rows: Draws, instances: Instances) -> None:
             nonlocal placed
-            count = span.stop - span.start
-            if count:
-                spans.append(span)
-                steps.append(DrawSpan(placed, placed + count))
-                placed += count
+            if len(rows):
+                pieces.append((rows, instances))
+                steps.append(DrawSpan(placed, placed + len(rows)))
+                placed += len(rows)
 
-        done = start
+        done = 0
         for number in sorted(
             range(len(self._buffers)), key=lambda each: self._buffers[each][0]
         ):
             key, buffer = self._buffers[number]
             is_before = self._buffer_order[number] < sequence
             side: Literal["left", "right"] = "left" if is_before else "right"
-            here = start + int(np.searchsorted(keys, np.uint64(key), side))
-            place(DrawSpan(done, here))
+            here = int(np.searchsorted(keys, np.uint64(key), side))
+            place(*part(bulk, done, here))
             done = here
             for entry in buffer._entries:
                 if isinstance(entry, DrawSpan):
-                    place(entry)
+                    place(*self._pieces[entry.start])
                 else:
                     steps.append(entry)
-        place(DrawSpan(done, stop))
-        return self._recording(
-            steps,
-            *_join(
-                [draws[span.start : span.stop] for span in spans], instances
-            ),
-        )
+        place(*part(bulk, done, len(keys)))
+        return self._recording(steps, *join(pieces))
 
-    def _add_draws(self, rows: Draws) -> DrawSpan:
+    def _add_draws(
+        self, rows: Draws, piece: tuple[Draws, Instances]
+    ) -> DrawSpan:
+        """``piece`` is the same rows, and the instances that they count."""
         span = DrawSpan(self._draw_count, self._draw_count + len(rows))
         self._draws.append(rows)
+        self._pieces[span.start] = piece
         self._draw_count = span.stop
         return span
 
@@ -519,57 +526,3 @@ class CommandList:
             start = position + 1
         place(order[start:])
         return steps, (np.concatenate(rows) if rows else np.zeros(0, np.int64))
-
-
-def _words(rows: NDArray[np.void]) -> NDArray[np.uint64]:
-    """The same memory as (N, words of a row): copied in one go, ten times
-    faster than NumPy copies structures field by field.
-    """
-    rows = np.ascontiguousarray(rows)
-    return rows.view(np.uint64).reshape(len(rows), rows.itemsize // 8)
-
-
-def _concatenate(
-    arrays: list[NDArray[np.void]], dtype: np.dtype[np.void]
-) -> NDArray[np.void]:
-    if len(arrays) == 1:
-        return arrays[0]
-    if not arrays:
-        return np.zeros(0, dtype)
-    return np.concatenate([_words(rows) for rows in arrays]).view(dtype)[:, 0]
-
-
-def _take(rows: NDArray[np.void], order: NDArray[np.int64]) -> NDArray[np.void]:
-    return _words(rows).take(order, axis=0).view(rows.dtype)[:, 0]
-
-
-def _join(pieces: list[Draws], instances: Instances) -> tuple[Draws, Instances]:
-    """Draws one after the other, and their instances in their order.
-
-    Within each piece instances already are.
-    """
-    used = []
-    for piece in pieces:
-        last = piece[-1]
-        end = int(last["first_instance"]) + int(last["instance_count"])
-        used.append(instances[int(piece["first_instance"][0]) : end])
-    # A copy, since the column is written below.
-    draws = _concatenate([np.empty(0, DRAW), *pieces], DRAW)
-    counts = draws["instance_count"]
-    draws["first_instance"] = np.cumsum(counts) - counts
-    return draws, _concatenate(used, INSTANCE)
-
-
-def _gather_instances(draws: Draws, instances: Instances) -> Instances:
-    """Instances in draw order; rewrites ``first_instance`` of ``draws``."""
-    counts = draws["instance_count"].astype(np.int64)
-    total = int(counts.sum())
-    starts = np.cumsum(counts) - counts
-    if (counts == 1).all():
-        # A copy, since the column is written below.
-        rows = draws["first_instance"].astype(np.int64)
-    else:
-        shift = draws["first_instance"].astype(np.int64) - starts
-        rows = np.arange(total) + np.repeat(shift, counts)
-    draws["first_instance"] = starts
-    return _take(instances, rows)
