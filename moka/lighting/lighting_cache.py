@@ -133,9 +133,11 @@ class LightingCache:
                 arrays["suns"].tolist()
             )
         )
-        return EnvironmentLighting(
-            maps, suns, arrays.get("harmonics"), is_cached=True
-        )
+        harmonics = arrays.get("harmonics")
+        if harmonics is not None:
+            # A view would keep the whole file in memory.
+            harmonics = harmonics.copy()
+        return EnvironmentLighting(maps, suns, harmonics, is_cached=True)
 
     def _read_lighting(self, lighting: EnvironmentLighting) -> Arrays:
         maps = lighting.maps

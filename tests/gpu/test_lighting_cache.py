@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,9 @@ import numpy as np
 import pytest
 
 import moka
+from moka.app.render_session import RenderSession, request_of
 from moka.cli.main import main
+from moka.core.statistics import Statistics
 from moka.lighting.code_digest import code_digest
 from moka.lighting.environment import Environment, Sun
 from moka.material.material import Material
@@ -107,6 +110,21 @@ def test_what_takes_no_time_is_not_kept(environment: str) -> None:
     tables = 131072
     folder = Path(os.environ["MOKA_CACHE_DIR"])
     assert sum(path.stat().st_size for path in folder.glob("*")) < 1.1 * tables
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc tells")
+def test_what_has_been_found_lets_go_of_its_files() -> None:
+    """They are mapped into memory, of which they are as much as a texture."""
+    request = request_of(ball(), environment=uneven(), size=SIZE)
+    for found in (False, True):
+        statistics = Statistics()
+        with RenderSession.open(request, statistics, cache=True) as session:
+            session.submit(want_pixels=False, want_display=True).wait()
+            session.report()
+            assert statistics.lighting["cached"] is found
+            maps = Path("/proc/self/maps").read_text(encoding="utf-8")
+            assert ".lighting" not in maps
+            session.keep_lighting()
 
 
 def test_a_damaged_entry_is_replaced() -> None:
