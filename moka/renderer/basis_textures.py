@@ -18,7 +18,7 @@ from moka.renderer.texture_settings import levels_beyond
 
 if TYPE_CHECKING:
     from moka.renderer.sampled_levels import SampledLevels
-    from moka.renderer.textures import TextureRequest
+    from moka.renderer.texture_request import TextureRequest
 
 __all__ = ["choose_format", "transcode"]
 

@@ -39,7 +39,8 @@ from moka.renderer.geometry import GeometryPool
 from moka.renderer.material_table import MaterialTable
 from moka.renderer.permutation import LightingDescription, Permutation
 from moka.renderer.scene_materials import SceneMaterials
-from moka.renderer.textures import TexturePool, TextureRequest
+from moka.renderer.texture_request import TextureRequest
+from moka.renderer.textures import TexturePool
 
 if TYPE_CHECKING:
     from moka.scene.live_materials import LiveMaterials

@@ -22,15 +22,15 @@ from moka.material.description import (
 from moka.material.material import AlphaMode, Material, Texture
 from moka.model.mesh import Primitive
 from moka.renderer.sampled_levels import SampledLevels, StillPicture
-from moka.renderer.texture_settings import TextureSettings
-from moka.renderer.textures import (
+from moka.renderer.texture_request import (
     Bumps,
     Coverage,
     Graft,
-    TexturePool,
     TextureRequest,
     texture_request,
 )
+from moka.renderer.texture_settings import TextureSettings
+from moka.renderer.textures import TexturePool
 
 __all__ = ["SceneMaterials"]
 

@@ -9,119 +9,27 @@ import os
 import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.commands.descriptors import (
-    MipmapMode,
-    PixelFormat,
-    TextureDescriptor,
-)
+from moka.commands.descriptors import TextureDescriptor
 from moka.commands.handles import Handle
 from moka.core.encoded_image import EncodedImage
 from moka.core.image_header import image_media_type
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
-from moka.material.material import Texture
 from moka.renderer.sampled_levels import SampledLevels
+from moka.renderer.texture_levels import (
+    arrange_texels,
+    is_of_one_colour,
+    make_levels,
+)
+from moka.renderer.texture_request import TextureRequest
 from moka.renderer.texture_settings import levels_beyond
 
-if TYPE_CHECKING:
-    from moka.core.mip_levels import Finish
-
-__all__ = [
-    "Bumps",
-    "Coverage",
-    "Graft",
-    "TexturePool",
-    "TextureRequest",
-    "texture_request",
-]
-
-_DATA_FORMATS = {
-    ("u1", 1): PixelFormat.R8,
-    ("u1", 2): PixelFormat.RG8,
-    ("u1", 3): PixelFormat.RGB8,
-    ("u1", 4): PixelFormat.RGBA8,
-    ("u2", 1): PixelFormat.R16,
-    ("u2", 2): PixelFormat.RG16,
-    ("u2", 3): PixelFormat.RGB16,
-    ("u2", 4): PixelFormat.RGBA16,
-}
-_COLOUR_FORMATS = {3: PixelFormat.SRGB8, 4: PixelFormat.SRGB8_ALPHA8}
-
-# Drivers hold three bytes as four anyway. Given as four, a 2048x2048 texture
-# uploads in a quarter of the time here and its colours sample in two thirds.
-_PADDED = {
-    PixelFormat.SRGB8: PixelFormat.SRGB8_ALPHA8,
-    PixelFormat.RGB8: PixelFormat.RGBA8,
-}
-
-COLOUR_SLOTS = frozenset({"base_colour", "emissive"})
-
-
-class Graft(Struct, frozen=True):
-    """That channel ``into`` of a texture is channel ``of`` another image.
-
-    ``identity`` is the image's, which has the same size.
-    """
-
-    identity: str
-    of: int
-    into: int
-
-
-class Coverage(Struct, frozen=True):
-    """That the alpha of a texture is how much of the surface is there.
-
-    With ``cutoff`` it is there where alpha reaches it.
-    """
-
-    cutoff: float | None = None
-
-
-class Bumps(Struct, frozen=True):
-    """That levels of normals keep in their alpha what they average.
-
-    ``scale`` is the normals' scale, for ``roughness_factor`` see
-    :func:`moka.core.normal_levels.normal_filter`.
-    """
-
-    scale: float
-    roughness_factor: float | None
-
-
-class TextureRequest(Struct, frozen=True):
-    """An image and how the GPU is to hold it.
-
-    Without ``coverage`` the alpha is not part of a colour. ``max_size`` is
-    the most texels along a side, ``picture`` the number of the still picture
-    that it is for, 0 for any.
-    """
-
-    identity: str
-    is_colour: bool
-    has_levels: bool
-    graft: Graft | None = None
-    coverage: Coverage | None = None
-    bumps: Bumps | None = None
-    max_size: int | None = None
-    picture: int = 0
-
-
-def texture_request(
-    slot: str, texture: Texture, **choices: Any
-) -> TextureRequest:
-    """The request for a texture of a material; ``choices`` are its fields."""
-    return TextureRequest(
-        texture.image.identity,
-        slot in COLOUR_SLOTS,
-        texture.sampler.mipmap is not MipmapMode.NONE,
-        **choices,
-    )
+__all__ = ["TexturePool"]
 
 
 class TexturePool:
@@ -196,7 +104,22 @@ class TexturePool:
                 return self._device.create_texture(*texture)
 
         with self._statistics.stage("decode"):
-            levels, pixels = self._levels(request, decoders, read)
+            texels, pixels, opaque = arrange_texels(
+                request,
+                [decoder.texels() for decoder in decoders],
+                spare=decoders[0].is_spare,
+            )
+            if is_of_one_colour(texels):
+                self._statistics.count("textures_of_one_colour")
+                levels = [np.ascontiguousarray(texels[:1, :1])]
+            else:
+                height, width = texels.shape[:2]
+                finest = self._finest(
+                    request, (width, height), decoders[0].image.where, read
+                )
+                levels = make_levels(
+                    request, texels, opaque=opaque, finest=finest
+                )
         height, width = levels[0].shape[:2]
         return self._device.create_texture(
             TextureDescriptor(
@@ -209,91 +132,22 @@ class TexturePool:
             levels,
         )
 
-    def _levels(
+    def _finest(
         self,
         request: TextureRequest,
-        decoders: "list[_Decoder]",
+        size: tuple[int, int],
+        where: str,
         read: SampledLevels | None,
-    ) -> tuple[list[NDArray[Any]], PixelFormat]:
-        from moka.core.decode import with_alpha
-        from moka.core.mip_levels import reduce_levels
-
-        texels, *others = (decoder.texels() for decoder in decoders)
-        height, width = texels.shape[:2]
-        texels = _arrange(texels, is_colour=request.is_colour)
-        alone = request.bumps is not None and request.graft is None
-        if alone and texels.shape[2] == 4:
-            # What the file has in an alpha of normals means nothing.
-            texels = np.ascontiguousarray(texels[:, :, :3])
-        if request.graft is not None:
-            texels = _grafted(
-                texels, others[0], request.graft, spare=decoders[0].is_spare
-            )
-        pixels = (
-            _COLOUR_FORMATS[texels.shape[2]]
-            if request.is_colour
-            else _DATA_FORMATS[texels.dtype.str[1:], texels.shape[2]]
-        )
-        opaque = pixels in _PADDED
-        if opaque:
-            pixels = _PADDED[pixels]
-            texels = with_alpha(texels)
-        elif request.bumps is not None and texels.shape[2] == 3:
-            white = np.full_like(texels[:, :, :1], np.iinfo(texels.dtype).max)
-            texels = np.concatenate([texels, white], axis=2)
-            pixels = PixelFormat.RGBA16
-        if _is_of_one_colour(texels):
-            self._statistics.count("textures_of_one_colour")
-            return [np.ascontiguousarray(texels[:1, :1])], pixels
+    ) -> int:
+        """The first level that is held of an image of ``size``."""
         finest = levels_beyond(
-            (width, height),
-            self._device.info.max_texture_size,
-            request.max_size,
-            decoders[0].image.where,
+            size, self._device.info.max_texture_size, request.max_size, where
         )
-        if request.has_levels and read is not None:
-            seen = read.finest(width, height)
-            self._statistics.count("textures_reduced", int(seen > finest))
-            finest = max(finest, seen)
-        if not request.has_levels and not finest:
-            return [texels], pixels
-        if request.coverage is not None and not opaque:
-            from moka.core.alpha_levels import reduce_alpha_levels
-
-            levels = reduce_alpha_levels(
-                texels, cutoff=request.coverage.cutoff, finest=finest
-            )
-        else:
-            # What nobody reads may be white: alpha that is no coverage of
-            # colours that carry nothing.
-            levels = reduce_levels(
-                texels,
-                srgb=request.is_colour,
-                opaque=opaque or (request.is_colour and not request.graft),
-                finish=_finish(request, texels),
-                finest=finest,
-            )
-        return levels if request.has_levels else levels[:1], pixels
-
-
-def _is_of_one_colour(texels: NDArray[Any]) -> bool:
-    """Whether all texels are the same; most images show it at a glance."""
-    first = texels[0, 0]
-    if (texels[::61, ::61] != first).any():
-        return False
-    return all(bool((row == first).all()) for row in texels)
-
-
-def _finish(request: TextureRequest, texels: NDArray[Any]) -> "Finish | None":
-    if request.bumps is None:
-        return None
-    from moka.core.normal_levels import normal_filter
-
-    return normal_filter(
-        texels,
-        scale=request.bumps.scale,
-        roughness_factor=request.bumps.roughness_factor,
-    )
+        if not request.has_levels or read is None:
+            return finest
+        seen = read.finest(*size)
+        self._statistics.count("textures_reduced", int(seen > finest))
+        return max(finest, seen)
 
 
 class _Decoder:
@@ -320,58 +174,3 @@ class _Decoder:
             self.uses -= 1
             self._texels = texels if self.uses else None
             return texels
-
-
-def _grafted(
-    texels: NDArray[Any], other: NDArray[Any], graft: Graft, *, spare: bool
-) -> NDArray[Any]:
-    """Texels of which one channel is that of another image of their size.
-
-    ``spare`` ones may be changed.
-    """
-    from moka.core.decode import with_alpha
-
-    # In grey images red, green and blue are one.
-    channel = other[:, :, graft.of if other.shape[2] > 2 else 0]
-    kind = max(texels.dtype, other.dtype)
-    channels = max(texels.shape[2], graft.into + 1)
-    if texels.shape[2] == 3 and texels.dtype == np.uint8:
-        texels = with_alpha(texels)
-    stored = max(texels.shape[2], channels)
-    fits = texels.dtype == kind and texels.shape[2] == stored
-    if spare and fits and texels.flags.writeable:
-        joined = texels
-    else:
-        joined = np.empty((*texels.shape[:2], stored), kind)
-        joined[:, :, : texels.shape[2]] = _widened(texels, kind)
-    joined[:, :, graft.into] = _widened(channel, kind)
-    # Without what is only padding, which is found again.
-    return joined[:, :, :channels]
-
-
-def _widened(texels: NDArray[Any], kind: np.dtype[Any]) -> NDArray[Any]:
-    """Codes as codes of a type that may be wider: 255 becomes 65 535."""
-    if texels.dtype == kind:
-        return texels
-    wide: NDArray[Any] = texels.astype(kind) * kind.type(257)
-    return wide
-
-
-def _arrange(texels: NDArray[Any], *, is_colour: bool) -> NDArray[Any]:
-    """Texels that a format on the GPU holds with the least loss.
-
-    Grey images become RGB where a shader reads colours: GL's sRGB formats
-    have three or four channels, and data are read as r, g, b.
-    """
-    channels = texels.shape[2]
-    if channels <= 2:
-        grey = np.repeat(texels[:, :, :1], 3, axis=2)
-        texels = (
-            np.concatenate([grey, texels[:, :, 1:]], axis=2)
-            if channels == 2
-            else grey
-        )
-    if is_colour and texels.dtype == np.uint16:
-        # There is no 16-bit sRGB format.
-        texels = ((texels.astype(np.uint32) + 128) // 257).astype(np.uint8)
-    return texels

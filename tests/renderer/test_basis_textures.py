@@ -8,7 +8,7 @@ from moka.commands.descriptors import PixelFormat
 from moka.core.encoded_image import EncodedImage
 from moka.core.ktx2 import open_ktx2
 from moka.renderer.basis_textures import choose_format, transcode
-from moka.renderer.textures import TextureRequest
+from moka.renderer.texture_request import TextureRequest
 from tests.support.ktx2_files import ktx2_file
 
 F = PixelFormat

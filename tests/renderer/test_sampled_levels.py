@@ -17,11 +17,8 @@ from moka.model.cameras import Orthographic, Perspective
 from moka.model.geometry import quad, sphere
 from moka.model.mesh import Primitive
 from moka.renderer import sampled_levels
-from moka.renderer.sampled_levels import (
-    SampledLevels,
-    StillPicture,
-    footprints,
-)
+from moka.renderer.footprints import footprints
+from moka.renderer.sampled_levels import SampledLevels, StillPicture
 from moka.scene.camera import Camera
 from tests.support.pictures import encoded, placed_at, scene_of, square_camera
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from moka.core.encoded_image import EncodedImage
 from moka.renderer.scene_materials import _longest_first
-from moka.renderer.textures import TextureRequest
+from moka.renderer.texture_request import TextureRequest
 
 
 def test_what_takes_longest_is_decoded_first(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from moka.core.png import write_png
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.material.material import Texture
-from moka.renderer.textures import TexturePool, texture_request
+from moka.renderer.texture_request import texture_request
+from moka.renderer.textures import TexturePool
 
 
 def encoded(seed: int) -> EncodedImage:
