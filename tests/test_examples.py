@@ -220,6 +220,20 @@ def test_own_shader__has_two_permutations() -> None:
     assert is_grey(striped).mean() > 0.05
 
 
+def test_embedding__keeps_what_the_host_has_set() -> None:
+    example = load("embedding")
+    shown = example.render((160, 90)).to_display()
+    # The host's frame, drawn with its own blending and texture after moka.
+    assert not shown[[0, -1], :, :3].any()
+    assert (shown[..., 3] == 255).all()
+    # Its wall, of two colours, shows through around the scene.
+    wall = np.array([[0.1, 0.2, 0.4], [0.9, 0.6, 0.2]]) * 255
+    distance = np.abs(shown[..., None, :3] - wall).max(axis=-1)
+    is_wall = distance.min(axis=-1) < 2
+    assert is_wall[10].mean() > 0.8
+    assert 0.05 < 1 - is_wall[20:70, 20:140].mean() < 0.9
+
+
 def is_grey(pixels: NDArray[np.int_]) -> NDArray[np.bool_]:
     """Bright pixels without a colour."""
     return (np.ptp(pixels, axis=2) < 12) & (pixels.min(axis=2) > 110)

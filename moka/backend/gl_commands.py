@@ -34,6 +34,7 @@ class CommandRunner:
     """Runs commands and remembers which framebuffer draws go to.
 
     ``resource`` gives the GL object of a handle, ``reader`` reads pixels.
+    ``window`` is the name of the framebuffer that stands for no handle.
     ``uploaded`` adds up bytes written, for whoever takes it and sets it to
     zero.
     """
@@ -51,6 +52,7 @@ class CommandRunner:
         self._reader = reader
         self._target: GlFramebuffer | None = None
         self._timestamps: TimestampQueries | None = None
+        self.window = 0
         self.uploaded = 0
 
     def run(self, command: Command) -> None:
@@ -75,8 +77,7 @@ class CommandRunner:
             case ResolveFramebuffer(source, target):
                 self._resolve(self._get(source), self._get(target))
             case ReadPixels(framebuffer):
-                name = 0 if framebuffer is None else self._get(framebuffer).name
-                self._reader.read(command, name)
+                self._reader.read(command, self._name(framebuffer))
             case Timestamp():
                 self._timestamp(command)
 
@@ -97,10 +98,13 @@ class CommandRunner:
             self._timestamps = TimestampQueries(self._gl)
         self._timestamps.record(command)
 
+    def _name(self, handle: Handle | None) -> int:
+        return self.window if handle is None else self._get(handle).name
+
     def _bind_framebuffer(self, handle: Handle | None) -> None:
         self._state.scissor(None)
         if handle is None:
-            self._state.framebuffer(0)
+            self._state.framebuffer(self.window)
             self._target = None
             return
         self._target = self._get(handle)

@@ -11,6 +11,7 @@ texture or compiles at the first draw. All such calls stand here.
 from collections.abc import Callable
 from ctypes import (
     addressof,
+    c_double,
     c_float,
     c_int,
     c_ssize_t,
@@ -30,19 +31,24 @@ _UINT = c_uint
 _SIZE = c_ssize_t
 _POINTER = c_void_p
 _FLOAT = c_float
+_DOUBLE = c_double
 _BOOL = c_ubyte
 
 # Name without its gl prefix: result type, argument types.
 _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "ActiveTexture": (None, _UINT),
     "BindBuffer": (None, _UINT, _UINT),
+    "BindBufferBase": (None, _UINT, _UINT, _UINT),
     "BindBufferRange": (None, _UINT, _UINT, _UINT, _SIZE, _SIZE),
     "BindFramebuffer": (None, _UINT, _UINT),
     "BindSampler": (None, _UINT, _UINT),
     "BindTexture": (None, _UINT, _UINT),
     "BindVertexArray": (None, _UINT),
     "BlendEquation": (None, _UINT),
+    "BlendEquationSeparate": (None, _UINT, _UINT),
+    "BlendEquationSeparatei": (None, _UINT, _UINT, _UINT),
     "BlendFuncSeparate": (None, _UINT, _UINT, _UINT, _UINT),
+    "BlendFuncSeparatei": (None, *[_UINT] * 5),
     "BlitFramebuffer": (None, *[_INT] * 8, _UINT, _UINT),
     "BufferData": (None, _UINT, _SIZE, _POINTER, _UINT),
     "BufferSubData": (None, _UINT, _SIZE, _SIZE, _POINTER),
@@ -51,6 +57,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "ClipControl": (None, _UINT, _UINT),
     "ClientWaitSync": (_UINT, _POINTER, _UINT, c_uint64),
     "ColorMask": (None, _BOOL, _BOOL, _BOOL, _BOOL),
+    "ColorMaski": (None, _UINT, _BOOL, _BOOL, _BOOL, _BOOL),
     "CompressedTexImage2D": (
         None,
         _UINT,
@@ -71,7 +78,9 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "DeleteSync": (None, _POINTER),
     "DepthFunc": (None, _UINT),
     "DepthMask": (None, _BOOL),
+    "DepthRange": (None, _DOUBLE, _DOUBLE),
     "Disable": (None, _UINT),
+    "Disablei": (None, _UINT, _UINT),
     "DrawArraysInstanced": (None, _UINT, _INT, _INT, _INT),
     "DrawBuffers": (None, _INT, _POINTER),
     "DrawElementsInstancedBaseVertex": (
@@ -84,6 +93,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
         _INT,
     ),
     "Enable": (None, _UINT),
+    "Enablei": (None, _UINT, _UINT),
     "EnableVertexAttribArray": (None, _UINT),
     "FenceSync": (_POINTER, _UINT, _UINT),
     "Finish": (None,),
@@ -95,10 +105,17 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "GenSamplers": (None, _INT, _POINTER),
     "GenTextures": (None, _INT, _POINTER),
     "GenerateMipmap": (None, _UINT),
+    "GetBooleani_v": (None, _UINT, _UINT, _POINTER),
     "GetBufferSubData": (None, _UINT, _SIZE, _SIZE, _POINTER),
+    "GetDoublev": (None, _UINT, _POINTER),
+    "GetInteger64i_v": (None, _UINT, _UINT, _POINTER),
+    "GetIntegeri_v": (None, _UINT, _UINT, _POINTER),
+    "GetIntegerv": (None, _UINT, _POINTER),
     "GetQueryObjectiv": (None, _UINT, _UINT, _POINTER),
     "GetQueryObjectui64v": (None, _UINT, _UINT, _POINTER),
     "GetTexImage": (None, _UINT, _INT, _UINT, _UINT, _POINTER),
+    "IsEnabled": (_BOOL, _UINT),
+    "IsEnabledi": (_BOOL, _UINT, _UINT),
     "MultiDrawArraysIndirect": (None, _UINT, _POINTER, _INT, _INT),
     "MultiDrawElementsIndirect": (
         None,

@@ -51,6 +51,10 @@ class BlockRegistry:
     def __init__(self) -> None:
         self._points: dict[str, int] = {}
 
+    def __len__(self) -> int:
+        """How many points have been given out, from 0."""
+        return len(self._points)
+
     def point(self, name: str) -> int:
         """The binding point of the blocks called ``name``."""
         return self._points.setdefault(name, len(self._points))

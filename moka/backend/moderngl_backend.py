@@ -111,7 +111,8 @@ class ModernGLBackend:
         self._runner = CommandRunner(
             self._gl, self._state, self._get, self._reader
         )
-        self._initialise()
+        keep_large_blocks()
+        self._set_defaults()
 
     def create_buffer(
         self, handle: Handle, descriptor: BufferDescriptor, data: Any
@@ -314,9 +315,9 @@ class ModernGLBackend:
         self._arrays.clear()
         self._context.close()
 
-    def _initialise(self) -> None:
+    def _set_defaults(self) -> None:
+        """Set what no draw and no command changes."""
         gl = self._gl
-        keep_large_blocks()
         gl.PixelStorei(c.UNPACK_ALIGNMENT, 1)
         gl.PixelStorei(c.PACK_ALIGNMENT, 1)
         gl.Enable(c.TEXTURE_CUBE_MAP_SEAMLESS)

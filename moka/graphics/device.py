@@ -3,7 +3,8 @@
 Resources are made and lists are submitted on any thread; everything is
 executed on the render thread in the order of the calls. The two sides meet
 at the start of a frame: a submit waits for the frame before the last, so
-that one frame at most is in flight while the next is recorded.
+that one frame at most is in flight while the next is recorded. A device that
+is embedded in another program executes on that program's thread, at once.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
         ProgramDescriptor,
         TextureDescriptor,
     )
+    from moka.graphics.calling_thread import CallingThread
 
 __all__ = ["Frame", "GraphicsDevice"]
 
@@ -53,7 +55,7 @@ class Frame:
 
     def __init__(
         self,
-        thread: RenderThread,
+        thread: RenderThread | CallingThread,
         future: Future[FrameCounters],
         reads: Sequence[Readback] = (),
     ) -> None:
@@ -91,20 +93,27 @@ class GraphicsDevice:
     """Owns a backend on its render thread and the handles of its resources.
 
     ``open_backend`` is called on the render thread and makes the context
-    there. Use :meth:`open` for a headless one. A device is closed by
-    :meth:`close`, by leaving its ``with`` block, when it is collected and
-    when the interpreter exits.
+    there; a :class:`CallingThread` has its own and stands for that thread.
+    Use :meth:`open` for a headless one, :meth:`embed` for one in another
+    program's context. A device is closed by :meth:`close`, by leaving its
+    ``with`` block, when it is collected and when the interpreter exits.
     """
 
-    def __init__(self, open_backend: Callable[[], Backend]) -> None:
+    def __init__(
+        self, open_backend: Callable[[], Backend] | CallingThread
+    ) -> None:
         number = next(_device_numbers)
         self._handles = HandleAllocator(number)
-        self._thread = RenderThread(open_backend)
+        self._thread: RenderThread | CallingThread
+        if callable(open_backend):
+            self._thread = RenderThread(open_backend)
+        else:
+            self._thread = open_backend
         self._info: BackendInfo | None = None
         self._in_flight: Frame | None = None
         self._checked: dict[frozenset[Handle], int] = {}
         self._releases = 0
-        self._finalizer = weakref.finalize(self, self._thread.close)
+        self._finalizer = weakref.finalize(self, self._thread.abandon)
 
     @classmethod
     def open(
@@ -137,6 +146,37 @@ class GraphicsDevice:
 
         return cls(open_backend)
 
+    @classmethod
+    def embed(cls, context: Any) -> GraphicsDevice:
+        """A device in another program's :class:`moderngl.Context`.
+
+        ``context`` (OpenGL 3.3 or later) is current on this thread, here and
+        at every call of the device; calls from other threads raise
+        DeviceError. There is no render thread: whatever is asked for is done
+        when the call returns. OpenGL's state is left as it was found, with
+        what was bound, down to pixel stores; a program that changes nothing
+        but that sees no difference.
+
+        Where a window would be drawn into, the framebuffer is the one that
+        ``context`` has bound when a list is submitted: a
+        ``Renderer(device, size, to_window=True)`` draws into
+        ``(0, 0, *size)`` of it, sRGB-encoded, without blending.
+
+        The context stays the caller's. Close the device before releasing it;
+        a device that is only dropped leaves its objects there. Raises
+        ContextError if it is no such context.
+        """
+        from moka.backend.contexts.embedded import EmbeddedContext
+        from moka.backend.embedded_backend import EmbeddedBackend
+        from moka.graphics.calling_thread import CallingThread
+        from moka.graphics.shader_source import explain_log
+
+        guest = EmbeddedContext(context)
+        device = cls(CallingThread(lambda: EmbeddedBackend(guest, explain_log)))
+        # Threads that decode images ask for it.
+        device._info = device.info
+        return device
+
     def __enter__(self) -> GraphicsDevice:
         return self
 
@@ -144,7 +184,7 @@ class GraphicsDevice:
         if isinstance(error, KeyboardInterrupt):
             # Whoever pressed Ctrl-C does not wait for a slow frame.
             self._finalizer.detach()
-            self._thread.close(timeout=0.0)
+            self._thread.abandon()
         else:
             self.close()
 

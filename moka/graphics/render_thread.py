@@ -160,6 +160,10 @@ class RenderThread:
             self._thread.join(timeout)
         return not self._thread.is_alive()
 
+    def abandon(self) -> None:
+        """End the thread without waiting until it has ended."""
+        self.close(timeout=0.0)
+
     def _enqueue(self, job: _Job[T]) -> Future[T]:
         if self._closed:
             raise DeviceError("the graphics device is closed")

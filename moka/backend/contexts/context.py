@@ -29,15 +29,22 @@ class GraphicsContext:
 
     It belongs to the thread that made it until :meth:`release_current`
     there lets another thread take it with :meth:`make_current`. ``kind`` is
-    ``egl``, ``osmesa`` or ``window``, ``label`` says which of them to a
-    person. ``gl`` collects dropped objects for ``gl.gc()``, because Python
-    may drop them on a thread without a context.
+    ``egl``, ``osmesa``, ``window`` or ``embedded``, ``label`` says which of
+    them to a person. ``gl`` collects dropped objects for ``gl.gc()``, because
+    Python may drop them on a thread without a context.
     """
 
-    def __init__(self, native: NativeContext, *, debug: bool = False) -> None:
+    def __init__(
+        self,
+        native: NativeContext,
+        *,
+        debug: bool = False,
+        gl: "moderngl.Context | None" = None,
+    ) -> None:
         """Wrap ``native``, which is current here and now owned by this.
 
-        Raises ContextError below OpenGL 3.3; ``native`` is destroyed then.
+        ``gl`` is its ModernGL context if there is one. Raises ContextError
+        below OpenGL 3.3; ``native`` is destroyed then.
         """
         self.kind = native.kind
         self.label = native.label
@@ -47,7 +54,7 @@ class GraphicsContext:
         self._closed = False
         self._debug: DebugLog | None = None
         try:
-            self.gl = _wrap(native)
+            self.gl = _wrap(native) if gl is None else gl
             if debug:
                 self._debug = DebugLog(
                     self.function,
