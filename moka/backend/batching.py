@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.commands.command_list import DrawSpan, Recording
+from moka.commands.recording import DrawSpan, Recording
 
 __all__ = ["INDIRECT", "Batches", "MeshTable", "merge_draws"]
 

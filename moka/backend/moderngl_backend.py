@@ -33,7 +33,6 @@ from moka.backend.gl_readback import PixelReader
 from moka.backend.gl_state import StateCache
 from moka.backend.gl_textures import GlFramebuffer, GlTexture, SamplerCache
 from moka.backend.protocol import FrameCounters, TextureData
-from moka.commands.command_list import DrawSpan, Recording
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,
@@ -46,6 +45,7 @@ from moka.commands.descriptors import (
 )
 from moka.commands.draws import INSTANCE
 from moka.commands.handles import Handle, ResourceKind
+from moka.commands.recording import DrawSpan, Recording
 from moka.core.errors import DeviceError, ShaderError
 from moka.core.heap import keep_large_blocks
 

@@ -10,7 +10,6 @@ from typing import Any, Protocol
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from moka.commands.command_list import Recording
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,
@@ -21,6 +20,7 @@ from moka.commands.descriptors import (
     TextureDescriptor,
 )
 from moka.commands.handles import Handle
+from moka.commands.recording import Recording
 
 __all__ = ["Backend", "BackendInfo", "FrameCounters", "TextureData"]
 

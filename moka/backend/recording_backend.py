@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from moka.backend.batching import Batches, MeshTable, merge_draws
 from moka.backend.protocol import BackendInfo, FrameCounters, TextureData
-from moka.commands.command_list import Recording
 from moka.commands.commands import (
     FillBuffer,
     FillTexture,
@@ -28,6 +27,7 @@ from moka.commands.descriptors import (
     TextureKind,
 )
 from moka.commands.handles import Handle
+from moka.commands.recording import Recording
 
 __all__ = ["RecordingBackend"]
 

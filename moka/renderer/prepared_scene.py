@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from msgspec import Struct
 
-from moka.commands.command_list import CommandBuffer
+from moka.commands.command_buffer import CommandBuffer
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BlendState,

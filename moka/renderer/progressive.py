@@ -12,7 +12,8 @@ from collections.abc import Hashable
 
 import numpy as np
 
-from moka.commands.command_list import CommandBuffer, CommandList
+from moka.commands.command_buffer import CommandBuffer
+from moka.commands.command_list import CommandList
 from moka.commands.commands import Readback
 from moka.commands.descriptors import (
     Attachment,

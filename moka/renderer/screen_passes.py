@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from moka.commands.command_list import CommandBuffer, CommandList
+from moka.commands.command_buffer import CommandBuffer
+from moka.commands.command_list import CommandList
 from moka.commands.descriptors import (
     BindGroupDescriptor,
     BufferDescriptor,

@@ -5,11 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from moka.commands.command_list import CommandList, DrawSpan, Recording
+from moka.commands.command_list import CommandList
 from moka.commands.commands import Clear, SetScissor, SetViewport
 from moka.commands.descriptors import CullMode, RasterState
 from moka.commands.draws import DRAW, INSTANCE
 from moka.commands.handles import Handle, ResourceKind
+from moka.commands.recording import DrawSpan, Recording
 from moka.commands.sort_key import SortKey, Stage
 from moka.core.errors import CommandError
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from moka.backend.recording_backend import RecordingBackend
-from moka.commands.command_list import CommandList, DrawSpan
+from moka.commands.command_list import CommandList
 from moka.commands.descriptors import (
     Attachment,
     BindGroupDescriptor,
@@ -22,6 +22,7 @@ from moka.commands.descriptors import (
     Topology,
 )
 from moka.commands.handles import Handle, ResourceKind
+from moka.commands.recording import DrawSpan
 from moka.commands.sort_key import SortKey, Stage
 from moka.core.errors import CommandError, DeviceError, ShaderError
 from moka.graphics.device import Frame, GraphicsDevice
