@@ -42,6 +42,7 @@ def command_arguments(request: RenderRequest) -> list[str]:
     intensity = _number(request.environment_intensity)
     add("environment-intensity", intensity, "1")
     add("background", _background(request.background), "environment")
+    add("background-blur", _number(request.background_blur), "0")
     if isinstance(request.camera, str | int):
         add("camera", request.camera, None)
     if request.time:
@@ -61,6 +62,8 @@ def command_arguments(request: RenderRequest) -> list[str]:
 def _add_settings(add: Any, settings: RenderSettings) -> None:
     plain = RenderSettings()
     add("exposure", _number(settings.exposure), "0")
+    if settings.gamma is not None:
+        add("gamma", _number(settings.gamma), None)
     for name in ("tone_map", "samples", "brdf", "diffuse"):
         add(
             name.replace("_", "-"),
@@ -81,6 +84,7 @@ def _add_settings(add: Any, settings: RenderSettings) -> None:
         return
     add("suns", settings.suns, plain.suns)
     add("irradiance", settings.irradiance, plain.irradiance)
+    add("reflections", settings.reflections, plain.reflections)
     if settings.ibl == "filtered":
         add("ibl-samples", settings.ibl_samples, plain.ibl_samples)
 

@@ -29,8 +29,10 @@ def render(
     background: Any = "environment",
     environment_rotation: float = 0.0,
     environment_intensity: float = 1.0,
+    background_blur: float = 0.0,
     exposure: float = 0.0,
     tone_map: str = "neutral",
+    gamma: float | None = None,
     samples: int = 4,
     brdf: str = "gltf",
     diffuse: str = "lambert",
@@ -61,16 +63,20 @@ def render(
     ``sky``, ``furnace``, ``none`` or a :class:`moka.Environment`, turned by
     ``environment_rotation`` radians counter-clockwise about +Y and its
     radiance multiplied by ``environment_intensity``. ``camera`` is a name or
-    index of a camera in the file, ``orbit:YAW,PITCH[,DISTANCE]`` in degrees
-    or a :class:`moka.Camera`; by default the file's first camera, else an
-    orbit that frames the model. An animated model has the pose of
-    ``animation``, a name or a position in ``Model.animations`` (by default
-    the first), at ``time`` seconds; an orbit frames it at 0 seconds.
+    index of a camera in the file, ``orbit:YAW,PITCH[,DISTANCE]`` in degrees,
+    ``look:EX,EY,EZ,TX,TY,TZ[,FOV]`` from a point to another one in metres
+    (FOV is the vertical angle in degrees, or with an ``m`` the height of a
+    parallel projection), or a :class:`moka.Camera`; by default the file's
+    first camera, else an orbit that frames the model. An animated model has
+    the pose of ``animation``, a name or a position in ``Model.animations``
+    (by default the first), at ``time`` seconds; an orbit frames it at 0 s.
     ``scene`` and ``variant`` choose a scene and a variant of materials of
     the file by name or index, by default the scene that the file names and
     no variant. ``background`` is ``environment``,
-    ``transparent`` or ``#rrggbb``. ``exposure`` (EV) and ``tone_map`` are
-    how the image shows itself; its pixels are neither exposed nor tone
+    ``transparent`` or ``#rrggbb``; ``background_blur``, 0 to 1, blurs the
+    environment there as a surface of that roughness would. ``exposure``
+    (EV), ``tone_map`` and ``gamma`` (a power in the place of the sRGB curve)
+    are how the image shows itself; its pixels are neither exposed nor tone
     mapped. ``brdf`` is ``gltf`` (glTF 2.0 appendix B), ``karis`` or
     ``blinn-phong``, ``diffuse`` ``lambert``, ``oren-nayar`` or ``burley``;
     ``multiscatter`` compensates the energy that single scattering loses
@@ -117,8 +123,10 @@ def render(
         background=background,
         environment_rotation=environment_rotation,
         environment_intensity=environment_intensity,
+        background_blur=background_blur,
         exposure=exposure,
         tone_map=tone_map,
+        gamma=gamma,
         samples=samples,
         brdf=brdf,
         diffuse=diffuse,

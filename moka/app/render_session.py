@@ -44,7 +44,8 @@ class RenderRequest(Struct, frozen=True):
     ``source`` is a path, the bytes of a file, a pygltflib document, a
     :class:`moka.Model`, or None for the built-in scene. ``environment`` is a
     path, a built-in name or a :class:`moka.Environment`.
-    ``environment_rotation`` is in radians about +Y. ``camera`` is what the
+    ``environment_rotation`` is in radians about +Y, ``background_blur`` 0 to
+    1. ``camera`` is what the
     command line's ``--camera`` takes, or a :class:`moka.Camera`. ``aovs``
     are names of :data:`moka.core.aov.AOVS`. ``full_textures`` keeps the
     levels of textures that are too fine for the picture. ``animation`` is a
@@ -56,6 +57,7 @@ class RenderRequest(Struct, frozen=True):
     environment: Any = "studio"
     environment_rotation: float = 0.0
     environment_intensity: float = 1.0
+    background_blur: float = 0.0
     background: Any = "environment"
     camera: Any = None
     size: tuple[int, int] = (1280, 720)
@@ -131,6 +133,7 @@ class PendingImage:
             pixels,
             tone_map=request.settings.tone_map,
             exposure=request.settings.exposure,
+            gamma=request.settings.gamma,
             display=shown,
             layers=_layers(request, self._values),
         )
@@ -318,6 +321,7 @@ def _load_scene(
     scene.background = request.background
     scene.environment_rotation = request.environment_rotation
     scene.environment_intensity = request.environment_intensity
+    scene.background_blur = request.background_blur
     model = scene.add(
         _load_model(request.source),
         scene=request.scene,

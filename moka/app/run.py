@@ -124,6 +124,7 @@ def _run_headless(
                     radiance.data[::-1],
                     tone_map=settings.tone_map,
                     exposure=settings.exposure,
+                    gamma=settings.gamma,
                     display=display.data[::-1],
                 )
             break

@@ -57,10 +57,17 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         help="environment, transparent or #rrggbb (default: environment)",
     )
     add(
+        "--background-blur",
+        metavar="X",
+        type=number,
+        default=0.0,
+        help="blur of the environment behind the model, 0 to 1 (default: 0)",
+    )
+    add(
         "--camera",
         metavar="CAMERA",
-        help="name or index of a glTF camera, or "
-        "orbit:YAW,PITCH[,DISTANCE] in degrees",
+        help="name or index of a glTF camera, orbit:YAW,PITCH[,DISTANCE] in "
+        "degrees, or look:EX,EY,EZ,TX,TY,TZ[,FOV] from a point to another",
     )
     add(
         "--time",
@@ -99,6 +106,12 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         default="neutral",
         help="neutral, aces, agx, reinhard, exponential, none "
         "(default: neutral)",
+    )
+    add(
+        "--gamma",
+        metavar="X",
+        type=number,
+        help="encode a .png with the power 1 / X (default: the sRGB curve)",
     )
     add(
         "--samples",
@@ -235,6 +248,7 @@ def picture_request(
         arguments.quality,
         exposure=arguments.exposure,
         tone_map=arguments.tone_map,
+        gamma=arguments.gamma,
         samples=arguments.samples,
         brdf=arguments.brdf,
         diffuse=arguments.diffuse,
@@ -259,6 +273,7 @@ def picture_request(
         environment_rotation=math.radians(arguments.environment_rotation),
         environment_intensity=arguments.environment_intensity,
         background=arguments.background,
+        background_blur=arguments.background_blur,
         camera=arguments.camera,
         size=arguments.size,
         settings=settings,

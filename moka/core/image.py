@@ -25,11 +25,11 @@ class Image:
     """A picture as it leaves the renderer.
 
     ``pixels`` are float32 (H, W, 4), top row first: linear Rec.709 radiance
-    multiplied by alpha (associated), then alpha. ``tone_map`` and
-    ``exposure`` (in EV) are how it is shown unless asked otherwise.
-    ``display`` is the picture as uint8 (H, W, 4) that the GPU already made
-    with just these two, sRGB-encoded and with alpha not associated; one of
-    the two may be missing where nobody needs it. ``layers`` are further
+    multiplied by alpha (associated), then alpha. ``tone_map``, ``exposure``
+    (in EV) and ``gamma`` (None for sRGB) are how it is shown unless asked
+    otherwise. ``display`` is the picture as uint8 (H, W, 4) that the GPU
+    already made with just these, encoded and with alpha not associated; one
+    of the two may be missing where nobody needs it. ``layers`` are further
     values (H, W) or (H, W, C) that an EXR file takes along, by the names of
     :data:`moka.core.aov.AOVS` or as :mod:`moka.core.exr` describes them.
     """
@@ -40,6 +40,7 @@ class Image:
         *,
         tone_map: str = "neutral",
         exposure: float = 0.0,
+        gamma: float | None = None,
         display: NDArray[np.uint8] | None = None,
         layers: Mapping[str, NDArray[Any]] | None = None,
     ) -> None:
@@ -51,6 +52,7 @@ class Image:
             raise ValueError(f"not RGBA pixels: shape {self._shape}")
         self.tone_map = tone_map
         self.exposure = exposure
+        self.gamma = gamma
         self.layers = dict(layers or {})
         self._pixels = pixels
         self._display = display
@@ -147,8 +149,11 @@ class Image:
         """
         name = self.tone_map if tone_map is None else tone_map
         stops = self.exposure if exposure is None else exposure
-        as_rendered = (name, stops) == (self.tone_map, self.exposure)
-        if self._display is not None and as_rendered and gamma is None:
+        if gamma is None:
+            gamma = self.gamma
+        shown_as = (name, stops, gamma)
+        as_rendered = shown_as == (self.tone_map, self.exposure, self.gamma)
+        if self._display is not None and as_rendered:
             return self._display
         if gamma is not None and not gamma > 0.0:
             raise OptionError(f"a gamma of {gamma} is not positive")

@@ -86,12 +86,14 @@ class LightSources:
         irradiance_as: str = "auto",
         ibl: str = "split-sum",
         reflections: str = "full",
+        blurred: bool = False,
     ) -> bool:
         """Have the maps that are asked for; whether they are new ones.
 
         ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
         ``irradiance_as``, ``ibl`` and ``reflections`` are RenderSettings'
-        ``suns``, ``irradiance``, ``ibl`` and ``reflections``. Reference
+        ``suns``, ``irradiance``, ``ibl`` and ``reflections``. With
+        ``blurred`` the background is read from the specular cube. Reference
         lighting samples the map as it is, and the environment's own suns as
         discs.
         """
@@ -99,6 +101,7 @@ class LightSources:
         if sampled:
             background, suns = True, MOST_SUNS
             specular = irradiance = False
+        specular |= blurred
         options = (suns, irradiance_as, ibl, reflections)
         wanted = (
             (background, specular, irradiance, sampled)
@@ -152,6 +155,11 @@ class LightSources:
             samples_per_pixel=0,
             estimated_error=None,
         )
+
+    @property
+    def suns(self) -> tuple[Sun, ...]:
+        """The suns that are lights, and no part of the specular cube."""
+        return self._suns
 
     @property
     def map_shows_suns(self) -> bool:

@@ -420,6 +420,8 @@ class Renderer:
             irradiance_as=self.settings.irradiance,
             ibl=self.settings.ibl,
             reflections=self.settings.reflections,
+            blurred=scene.background == "environment"
+            and scene.background_blur > 0.0,
         )
         if changed:
             self._screen.forget()
@@ -568,6 +570,7 @@ class Renderer:
             scene.environment_rotation,
             scene.environment_intensity,
             scene.background == "environment",
+            scene.background_blur,
             scene.transforms.version,
             scene.pose_version,
             scene.visibility_version,
@@ -609,7 +612,10 @@ class Renderer:
         environment_map = self._sources.maps.map
         if scene.background != "environment" or environment_map is None:
             return None
-        if self._sources.map_shows_suns:
+        cube, suns = None, scene.environment.suns
+        if scene.background_blur > 0.0:
+            cube, suns = self._sources.maps.specular, self._sources.suns
+        elif self._sources.map_shows_suns:
             environment_map = self._sky_map.without_suns(scene.environment)
         return Sky(
             environment_map,
@@ -617,8 +623,11 @@ class Renderer:
             rotation=scene.environment_rotation,
             intensity=scene.environment_intensity,
             float_target=self.settings.float_output or self._accumulates,
-            suns=scene.environment.suns,
+            suns=suns,
             height=self.size[1],
+            cube=cube,
+            levels=self._sources.maps.specular_levels,
+            blur=scene.background_blur,
         )
 
     def _draw_display(
@@ -632,6 +641,7 @@ class Renderer:
             self._sky_behind,
             tone_map="stops" if self.shows_stops else self.settings.tone_map,
             exposure=self.settings.exposure,
+            gamma=None if self.shows_stops else self.settings.gamma,
             background=None if isinstance(colour, str) else colour,
             window=self.size if self._to_window else None,
             area=self.area,

@@ -66,7 +66,8 @@ class Sky:
     ``rotation`` is in radians about +Y; a ``float_target`` can hold any
     radiance, others what half floats can. ``suns`` are drawn as discs, the
     first 64 of them, with edges for a picture of ``height`` pixels; they are
-    not in the map.
+    not in the map. With ``cube``, prefiltered in so many ``levels``, it is
+    seen as a surface of roughness ``blur`` reflects it.
     """
 
     def __init__(
@@ -79,14 +80,24 @@ class Sky:
         float_target: bool,
         suns: Sequence[Sun] = (),
         height: int = 1,
+        cube: Handle | None = None,
+        levels: int = 1,
+        blur: float = 0.0,
     ) -> None:
         self.binding = TextureBinding(
             "environment_map", environment_map, MAP_SAMPLER
         )
         self.defines = {"MOKA_FLOAT_TARGET": 1} if float_target else {}
+        level = angle = 0.0
+        if cube is not None:
+            self.defines["MOKA_BLURRED_SKY"] = 1
+            self.binding = TextureBinding("specular_cube", cube, CUBE_SAMPLER)
+            # Where lighting.glsl reads it, and the width of such a lobe.
+            level = (levels - 1) * blur * (2.0 - blur)
+            angle = blur**2
         values: dict[str, Any] = {
             "direction_from_clip": view.direction_from_clip(rotation),
-            "parameters": (intensity, 0.0, 2.0 / height, 0.0),
+            "parameters": (intensity, level, 2.0 / height, angle),
         }
         suns = suns[:MOST_DISCS]
         if suns:
@@ -173,11 +184,14 @@ class ScreenPasses:
         *,
         tone_map: str,
         exposure: float,
+        gamma: float | None,
         background: tuple[float, float, float] | None,
         window: tuple[int, int] | None,
         area: tuple[int, int, int, int] | None = None,
     ) -> None:
         """Average the samples, expose, tone map and encode.
+
+        ``gamma`` encodes by a power, None as sRGB.
 
         ``sky`` is as in :meth:`resolve`. ``background`` is a linear display
         colour that shows through where coverage is below 1; None keeps
@@ -186,7 +200,7 @@ class ScreenPasses:
         """
         values = _TONE_MAP.pack(
             {
-                "display": (2.0**exposure, 1.0, 0.0, 0.0),
+                "display": (2.0**exposure, 1.0 / (gamma or 1.0), 0.0, 0.0),
                 "background": (
                     (0, 0, 0, 0) if background is None else (*background, 1)
                 ),
@@ -196,6 +210,8 @@ class ScreenPasses:
         buffer.fill_buffer(self._tone_map, values)
         defines, textures = self._scene(buffer, targets, sky)
         defines[f"MOKA_TONE_MAP_{tone_map.upper()}"] = 1
+        if gamma is not None:
+            defines["MOKA_ENCODE_GAMMA"] = 1
         blocks = (self._sky_block, UniformBinding("ToneMap", self._tone_map))
         if window is None:
             buffer.bind_framebuffer(targets.display)

@@ -36,6 +36,8 @@ DEFAULT_IBL_SAMPLES = 16
 MOST_IBL_SAMPLES = 256
 MOST_REFERENCE_SAMPLES = 1 << 24
 
+MOST_GAMMA = 10
+
 # As far as any driver goes.
 MOST_ANISOTROPY = 16
 MOST_TEXTURE_SIZE = 1 << 16
@@ -45,9 +47,11 @@ class RenderSettings(Struct, frozen=True):
     """Settings of a :class:`moka.Renderer`.
 
     ``exposure`` is in stops and applies before the tone map, never to float
-    output. ``samples`` is the number of samples per pixel for edges; a
-    driver that has fewer uses what it has. ``float_output`` asks for a
-    float32 target, so that radiance above 65 504 survives into an EXR.
+    output; ``gamma`` encodes the display with the power 1 / gamma in the
+    place of the sRGB curve. ``samples`` is the number of samples per pixel
+    for edges; a driver that has fewer uses what it has. ``float_output``
+    asks for a float32 target, so that radiance above 65 504 survives into an
+    EXR.
 
     ``suns`` is how many bright, compact parts of the environment become
     lights: ``auto``, ``off`` or a number at most. ``irradiance`` is what
@@ -75,6 +79,7 @@ class RenderSettings(Struct, frozen=True):
 
     exposure: float = 0.0
     tone_map: str = "neutral"
+    gamma: float | None = None
     samples: int = 4
     brdf: str = "gltf"
     diffuse: str = "lambert"
@@ -130,6 +135,10 @@ class RenderSettings(Struct, frozen=True):
         if not 0 <= self.cull_pixels <= 1e6:
             raise OptionError(
                 f"cull pixels: {self.cull_pixels} is not between 0 and 1e6"
+            )
+        if self.gamma is not None and not 0 < self.gamma <= MOST_GAMMA:
+            raise OptionError(
+                f"gamma: {self.gamma} is not above 0 and up to {MOST_GAMMA}"
             )
         if not abs(self.exposure) <= 64:
             raise OptionError(

@@ -52,6 +52,7 @@ class Scene:
         self.environment: Any = None
         self.environment_rotation = 0.0
         self._environment_intensity = 1.0
+        self._background_blur = 0.0
         self.transforms = TransformTree(fixed=True)
         self.drawables = Drawables()
         self.shown: NDArray[np.bool_] = np.zeros(0, np.bool_)
@@ -99,6 +100,23 @@ class Scene:
                 f"0 and {BRIGHTEST:g}"
             )
         self._environment_intensity = value
+
+    @property
+    def background_blur(self) -> float:
+        """How blurred the environment is behind the models, 0 to 1.
+
+        As a surface of that roughness reflects it; light stays as it is.
+        Raises OptionError for what is not between 0 and 1.
+        """
+        return self._background_blur
+
+    @background_blur.setter
+    def background_blur(self, value: float) -> None:
+        if not 0.0 <= value <= 1.0:
+            raise OptionError(
+                f"scene: a background_blur of {value} is not between 0 and 1"
+            )
+        self._background_blur = value
 
     @property
     def models(self) -> list[SceneModel]:

@@ -36,12 +36,15 @@ def read_back(arguments: list[str]) -> RenderRequest:
             "environment_intensity": 0.1,
             "background": "transparent",
         },
+        {"background_blur": 0.25, "camera": "look:1,2,3,-4,5,6,70"},
         {"camera": "orbit:30,-15.5,2.25", "time": 1.5, "animation": "Run"},
         {"camera": "front", "scene": "second", "variant": "blue"},
         {
             "settings": RenderSettings(
                 exposure=-0.25,
                 tone_map="aces",
+                gamma=2.2,
+                reflections="half",
                 samples=1,
                 brdf="karis",
                 diffuse="burley",

@@ -7,12 +7,18 @@ import pytest
 from numpy.testing import assert_allclose
 
 from moka.core.errors import OptionError
-from moka.model.cameras import CameraDescription, Perspective
+from moka.model.cameras import (
+    CameraDescription,
+    Orthographic,
+    Perspective,
+)
 from moka.scene.camera import Camera
 from moka.scene.camera_choice import (
     CameraChoice,
+    Look,
     Orbit,
     choose_camera,
+    look_text,
     parse_camera,
 )
 from moka.scene.scene import Scene
@@ -33,6 +39,9 @@ from tests.scene.models import make_model
         ("orbit:180,-90", Orbit(math.pi, -math.pi / 2)),
         ("orbit: 90 , 45 , 2.5", Orbit(math.pi / 2, math.pi / 4, 2.5)),
         ("orbit:-720,1e1", Orbit(-4 * math.pi, math.radians(10))),
+        ("look:1,2,3,-4,5,6e1", Look((1, 2, 3), (-4, 5, 60))),
+        ("look: 1,2,3, 0,0,0, 90", Look((1, 2, 3), (0, 0, 0), math.pi / 2)),
+        ("look:1,2,3,0,0,0,2.5m", Look((1, 2, 3), (0, 0, 0), height=2.5)),
     ],
 )
 def test_choices(text: str, choice: CameraChoice) -> None:
@@ -54,6 +63,17 @@ def test_choices(text: str, choice: CameraChoice) -> None:
         "orbit:0,91",
         "orbit:0,0,0",
         "orbit:0,0,-3",
+        "look:",
+        "look:1,2,3",
+        "look:1,2,3,4,5",
+        "look:1,2,3,4,5,6,7,8",
+        "look:1,2,3,4,5,6m",
+        "look:1,2,3,4,5,nan",
+        "look:1,2,3,4,5,m",
+        "look:1,2,3,1,2,3",
+        "look:1,2,3,4,5,6,0",
+        "look:1,2,3,4,5,6,180",
+        "look:1,2,3,4,5,6,-2m",
     ],
 )
 def test_nonsense_is_one_line(text: str) -> None:
@@ -112,3 +132,29 @@ def test_an_orbit_goes_before_the_cameras_of_the_file(scene: Scene) -> None:
     assert bounds is not None
     centre = np.mean(bounds, axis=0)
     assert_allclose(camera.position, np.add(centre, (0, 3, 0)))
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        Look((1.25, -2, 3e-3), (0.1, 7, 1 / 3)),
+        Look((0, 0, 5), (0, 0, 0), math.radians(70)),
+        Look((0, 9, 0), (0, 0, 0), height=2.5),
+    ],
+)
+def test_a_look_is_the_camera_of_its_text(scene: Scene, look: Look) -> None:
+    read = parse_camera(look_text(look))
+    assert isinstance(read, Look)
+    assert_allclose([*read.eye, *read.target], [*look.eye, *look.target])
+    camera = choose_camera(scene, read, 1.5)
+    assert_allclose(camera.position, look.eye)
+    seen = camera.view_matrix @ [*look.target, 1.0]
+    assert_allclose(seen[:2], 0.0, atol=1e-12)
+    assert_allclose(-seen[2], math.dist(look.eye, look.target))
+    if look.height is not None:
+        assert isinstance(camera.projection, Orthographic)
+        assert camera.projection.ymag == 1.25
+    else:
+        assert isinstance(camera.projection, Perspective)
+        expected = look.yfov or math.radians(45)
+        assert camera.projection.yfov == pytest.approx(expected)
