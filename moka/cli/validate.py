@@ -1,6 +1,7 @@
 """Check a glTF file against the rules of the specification."""
 
 import argparse
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,9 @@ __all__ = ["add_arguments", "execute"]
 
 INVALID = 1
 
+#: A fault of an exporter is in every accessor of a file.
+SHOWN = 5
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``moka validate``."""
@@ -19,6 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--json", action="store_true", help="print JSON instead of text"
+    )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help=f"print every issue, not the first {SHOWN} of each kind",
     )
 
 
@@ -35,7 +44,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
         print(json.dumps(_as_json(report), indent=2))
     else:
-        print(_as_text(arguments.model, report))
+        print(_as_text(arguments.model, report, all_of_them=arguments.all))
     return 0 if report.is_valid else INVALID
 
 
@@ -59,14 +68,22 @@ def _as_json(report: "Report") -> dict[str, object]:
     }
 
 
-def _as_text(model: Path, report: "Report") -> str:
+def _as_text(model: Path, report: "Report", *, all_of_them: bool) -> str:
     from moka.model.validation.issues import Severity
 
-    lines = [
-        f"{issue.severity.value}: {issue.path or 'the file'}: "
-        f"{issue.message} ({issue.code})"
-        for issue in report.issues
-    ]
+    lines = []
+    seen = Counter[str]()
+    of_code = Counter(issue.code for issue in report.issues)
+    for issue in report.issues:
+        seen[issue.code] += 1
+        if all_of_them or seen[issue.code] <= SHOWN:
+            lines.append(
+                f"{issue.severity.value}: {issue.path or 'the file'}: "
+                f"{issue.message} ({issue.code})"
+            )
+        elif seen[issue.code] == SHOWN + 1:
+            more = of_code[issue.code] - SHOWN
+            lines.append(f"    and {more} more of {issue.code}; see --all")
     counts = ", ".join(
         f"{report.count(severity)} {name}"
         for severity, name in (

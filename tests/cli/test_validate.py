@@ -52,6 +52,23 @@ def test_an_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     }
 
 
+def test_many_of_a_kind_are_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "model.gltf"
+    nodes = [{"mesh": 9}] * 12
+    path.write_text(json.dumps({"asset": {"version": "2.0"}, "nodes": nodes}))
+    assert main(["validate", str(path)]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [line[:16] for line in lines[:5]] == [
+        f"error: nodes[{number}]." for number in range(5)
+    ]
+    assert lines[5] == "    and 7 more of UNRESOLVED_REFERENCE; see --all"
+    assert main(["validate", str(path), "--all"]) == 1
+    everything = capsys.readouterr().out.splitlines()
+    assert sum("UNRESOLVED_REFERENCE" in line for line in everything) == 12
+
+
 def test_a_file_that_cannot_be_read(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -53,7 +53,7 @@ def _check_sampler(
             file.add(
                 "ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE",
                 (*place, name),
-                "the buffer view of an animation has no stride",
+                "the buffer view of an animation must not have a stride",
             )
         index = sampler.get(name)
         accessor = file.get("accessors", index)

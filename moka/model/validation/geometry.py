@@ -136,7 +136,7 @@ def _check_indices(
         file.add(
             "MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE",
             where,
-            "the buffer view of indices has no stride",
+            "the buffer view of indices must not have a stride",
         )
     kind, component, normalised = layout
     if kind != "SCALAR" or component not in _RESTART or normalised:

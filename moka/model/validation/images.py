@@ -110,7 +110,7 @@ def _check_view(file: CheckedFile, image: dict[str, Any], place: Place) -> None:
         file.add(
             "IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE",
             where,
-            "the buffer view of an image has no stride",
+            "the buffer view of an image must not have a stride",
         )
     if "target" in view:
         file.add(

@@ -68,7 +68,7 @@ def _check_inverse(
         file.add(
             "SKIN_IBM_ACCESSOR_WITH_BYTESTRIDE",
             where,
-            "the buffer view of inverse bind matrices has no stride",
+            "the buffer view of inverse bind matrices must not have a stride",
         )
     if layout != ("MAT4", _FLOAT, False):
         file.add("SKIN_IBM_INVALID_FORMAT", where, "is not of MAT4 of floats")
@@ -137,7 +137,7 @@ def _check_influences(
             file.add(
                 "ACCESSOR_WEIGHTS_NEGATIVE",
                 (*place, f"WEIGHTS_{index}"),
-                f"of element {negative[0][0]} is negative",
+                f"a weight of element {negative[0][0]} is negative",
             )
     counted = (weight > 0) & (joint < count)
     for column in range(1, joint.shape[1]):
@@ -157,7 +157,7 @@ def _check_influences(
         file.add(
             "ACCESSOR_WEIGHTS_NON_NORMALIZED",
             (*place, "WEIGHTS_0"),
-            f"of element {uneven[0]} sum to {total[uneven[0]]:.6g}",
+            f"the weights of element {uneven[0]} sum to {total[uneven[0]]:.6g}",
         )
 
 
