@@ -6,7 +6,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 ARGS ?=
 
-.PHONY: demo test lint format types docs gallery bench clean
+.PHONY: demo test lint format types docs gallery conformance bench clean
 
 demo: $(VENV)/.dev
 	$(BIN)/moka render -o demo.png $(ARGS)
@@ -31,6 +31,9 @@ docs: $(VENV)/.docs
 
 gallery: $(VENV)/.dev
 	$(BIN)/python docs/make_gallery.py $(ARGS)
+
+conformance: $(VENV)/.dev
+	$(BIN)/python docs/make_conformance.py
 
 # Against a script that does the same with bare ModernGL and nothing else:
 # make bench MODEL=helmet.gltf ENVIRONMENT=sky.hdr
