@@ -19,6 +19,7 @@ vec3 received_light(Surface surface) {
     light += environment_light(surface);
 #endif
 #ifdef MOKA_PUNCTUAL_LIGHTS
+    surface.spread = mirrored_spread(surface);
     light += punctual_light(surface);
 #endif
     return light;

@@ -21,6 +21,7 @@ struct Surface {
     vec3 normal;
     vec3 view;   // towards the viewer
     vec2 table;  // of the BRDF table for this view and roughness
+    float spread;  // of mirrored views over the pixel, see mirrored_spread
 };
 
 #ifdef MOKA_BRDF_TABLE
@@ -39,6 +40,7 @@ Surface make_surface(
     surface.occlusion = occlusion;
     surface.normal = normal;
     surface.view = view;
+    surface.spread = 0.0;
 #ifdef MOKA_BRDF_TABLE
     vec2 place = table_place(
         clamp_n_dot_v(dot(normal, view)), roughness,
@@ -50,18 +52,18 @@ Surface make_surface(
     return surface;
 }
 
-// The part of an environment's light that reaches the diffuse base. It is the
-// dielectric's alone: glTF 2.0, B.2.4, mixes a dielectric and a metal by
-// metalness. Without compensation it is the mean of appendix B's 1 - F(v.h),
-// which lights have.
-float base_share(Surface surface, float n_dot_v) {
+// The part of an environment's light that reaches the diffuse base. With
+// compensation it is what a dielectric's interface lets through: glTF 2.0,
+// B.2.4, mixes a dielectric and a metal by metalness. Without, it is the mean
+// of the 1 - F(v.h), of the mixed F0, that B.3.5 has and lights get.
+vec3 base_share(Surface surface, float n_dot_v) {
 #ifdef MOKA_MULTISCATTER
-    return diffuse_share(
+    return vec3(diffuse_share(
         specular_albedo(DIELECTRIC_F0, surface.f90, surface.table)
-        * multiscatter_scale(DIELECTRIC_F0, surface.table));
+        * multiscatter_scale(DIELECTRIC_F0, surface.table)));
 #else
-    return diffuse_share(mix(
-        DIELECTRIC_F0, surface.f90, mean_fresnel_power(n_dot_v)));
+    return 1.0
+        - mix(surface.f0, surface.f90, mean_fresnel_power(n_dot_v));
 #endif
 }
 
@@ -174,6 +176,21 @@ vec3 environment_light(Surface surface) {
 
 #ifdef MOKA_PUNCTUAL_LIGHTS
 
+// Twice the solid angle that a pixel sees in a mirror of this shape, as the
+// square of a disc's radius: such a disc always has a pixel's centre in it.
+// In a small sphere the sun is smaller than a pixel, and
+// mostly between the points that are shaded; a disc that is wider by the
+// pixel gives them their share of its light. After Tokuyoshi and Kaplanyan
+// 2019, "Improved Geometric Specular Antialiasing", of a disc in place of a
+// lobe. Only for fragment shaders: it needs derivatives.
+const float MOST_SPREAD = 0.04;
+
+float mirrored_spread(Surface surface) {
+    vec3 mirrored = reflect(-surface.view, surface.normal);
+    vec3 seen = cross(dFdx(mirrored), dFdy(mirrored));
+    return min(2.0 * INVERSE_PI * length(seen), MOST_SPREAD);
+}
+
 // KHR_lights_punctual: the window that takes a light to nothing at its
 // range, times the inverse square. inverse_range is 0 without a range.
 float distance_attenuation(float squared_distance, float inverse_range) {
@@ -190,7 +207,7 @@ float distance_attenuation(float squared_distance, float inverse_range) {
 // diffuse term (1 - F(v.h)) lets base and interface together return up to
 // 1.9 at grazing angles. ``scale`` is multiscatter_scale.
 vec3 reflected_light(
-    LightsRow light, Surface surface, float base, vec3 scale
+    LightsRow light, Surface surface, vec3 base, vec3 scale
 ) {
     bool is_sun = light.angular_radius > 0.0;
 #ifdef MOKA_IBL_REFERENCE
@@ -216,7 +233,7 @@ vec3 reflected_light(
     if (angles.n_dot_l <= 0.0 || attenuation <= 0.0) return vec3(0.0);
     vec3 fresnel = fresnel_schlick(angles.v_dot_h, surface.f0, surface.f90);
 #ifdef MOKA_MULTISCATTER
-    vec3 share = vec3(base);
+    vec3 share = base;
 #else
     vec3 share = 1.0 - fresnel;
 #endif
@@ -225,7 +242,8 @@ vec3 reflected_light(
         vec3 offset = towards - reflect(-surface.view, surface.normal);
         lobe = specular_lobe_of_disc(
             angles, dot(offset, offset), surface.roughness,
-            light.angular_radius);
+            sqrt(light.angular_radius * light.angular_radius
+                + surface.spread));
         if (light.in_map != 0.0) lobe *= sun_weight(surface.roughness);
         // Occluded like the rest of the environment that it is part of.
         attenuation *= surface.occlusion;
@@ -246,10 +264,10 @@ vec3 reflected_light(
 // most environments have needs no loop, and no reads that depend on one.
 vec3 punctual_light(Surface surface) {
 #ifdef MOKA_MULTISCATTER
-    float base = base_share(
+    vec3 base = base_share(
         surface, clamp_n_dot_v(dot(surface.normal, surface.view)));
 #else
-    float base = 0.0;
+    vec3 base = vec3(0.0);
 #endif
     vec3 scale = multiscatter_scale(surface.f0, surface.table);
 #if MOKA_PUNCTUAL_LIGHTS == 1

@@ -28,7 +28,7 @@ struct Scatterer {
     mat3 environment_axes;  // takes a direction to the environment's space
     vec3 view;
     vec3 scale;  // of the lobe, for light that is reflected more than once
-    float base;  // the part of light that reaches the diffuse base
+    vec3 base;  // the part of light that reaches the diffuse base
     float alpha;
     float k;     // of Schlick-GGX
     bool is_mirror;
@@ -89,7 +89,7 @@ vec3 reflect_light(
     }
     if (s.has_base) {
 #ifdef MOKA_MULTISCATTER
-        vec3 share = vec3(s.base);
+        vec3 share = s.base;
 #else
         vec3 share = 1.0 - fresnel;
 #endif

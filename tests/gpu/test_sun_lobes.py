@@ -5,11 +5,14 @@ import pytest
 
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment, Sun
+from moka.material.material import Material
+from moka.model.geometry import sphere
 from tests.support.gpu import gpu
 from tests.support.oracles import reference
 from tests.support.oracles import sun as oracle
 from tests.support.oracles.directions import dot, spherical
 from tests.support.patches import VIEW, draw_patches
+from tests.support.pictures import draw_radiance, scene_of, square_camera
 from tests.support.probe import LightingProbe
 
 pytestmark = pytest.mark.gpu
@@ -173,3 +176,34 @@ def test_reference_lighting_samples_the_disc(
                 passed = 1.0 - oracle.schlick(half @ VIEW, 0.04)
                 truth += passed * (normal @ towards) * np.array(COPPER) / np.pi
             assert found == pytest.approx(truth, rel=0.01, abs=1e-6)
+
+
+@pytest.mark.parametrize("size", [16, 48])
+@pytest.mark.parametrize("roughness", [0.0, 0.1])
+def test_a_glint_smaller_than_a_pixel_has_its_light(
+    egl_device: GraphicsDevice, size: int, roughness: float
+) -> None:
+    """A mirror sphere scatters evenly: E a^2 / 4, wherever pixels lie.
+
+    Without a disc that is wider by the pixel there was nothing in most
+    pictures, and seven times as much in others.
+    """
+    found = []
+    for x in (0.0, 0.15, 0.3, 0.45, 0.6):
+        towards = np.array([x, 0.5, 0.8]) / np.linalg.norm([x, 0.5, 0.8])
+        material = Material(roughness_factor=roughness)
+        scene = scene_of(
+            [(sphere(0.9, 96, 48), material, np.eye(4))],
+            sun_at(towards),
+            "transparent",
+        )
+        picture = draw_radiance(
+            egl_device, scene, square_camera(), (size, size)
+        )
+        # Two metres wide and high.
+        found.append(4.0 * picture[..., :3].mean())
+    # Of a mirror one to four pixels have their centre in the disc.
+    exact = 0.9**2 / 4.0
+    assert np.mean(found) == pytest.approx(exact, rel=0.25)
+    assert 0.4 * exact < min(found)
+    assert max(found) < 2.1 * exact
