@@ -168,7 +168,7 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--ibl",
         metavar="MODE",
-        help="light of the environment: split-sum, filtered, reference "
+        help="light of the environment: split-sum, filtered, reference or off "
         "(default: split-sum)",
     )
     add(

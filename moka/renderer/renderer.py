@@ -411,12 +411,13 @@ class Renderer:
             )
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
+        is_lit = self.settings.ibl != "off"
         changed = self._sources.update_maps(
             scene.environment,
             background=scene.background == "environment",
-            specular=materials.has_lit,
-            irradiance=materials.has_diffuse,
-            suns=self.settings.suns,
+            specular=materials.has_lit and is_lit,
+            irradiance=materials.has_diffuse and is_lit,
+            suns=self.settings.suns if is_lit else "off",
             irradiance_as=self.settings.irradiance,
             ibl=self.settings.ibl,
             reflections=self.settings.reflections,
@@ -440,7 +441,7 @@ class Renderer:
         settings = self.settings
         maps = self._sources.maps
         lighting = LightingDescription(
-            maps.lights_surfaces,
+            maps.lights_surfaces and settings.ibl != "off",
             capacity,
             settings.brdf,
             settings.diffuse,
@@ -449,7 +450,8 @@ class Renderer:
             self._sources.harmonics is not None,
             # Of uniform light split-sum is exact, and there is no such cube.
             "split-sum"
-            if settings.ibl == "filtered" and maps.radiance is None
+            if settings.ibl == "off"
+            or (settings.ibl == "filtered" and maps.radiance is None)
             else settings.ibl,
             logarithmic_depth,
             positional,

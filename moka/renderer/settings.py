@@ -29,7 +29,7 @@ REFLECTIONS = ("full", "half")
 # Each is a light in every pixel.
 MOST_SUNS = 64
 LIGHT_PARTS = ("all", "diffuse", "specular")
-IBL_MODES = ("split-sum", "filtered", "reference")
+IBL_MODES = ("split-sum", "filtered", "reference", "off")
 
 DEFAULT_IBL_SAMPLES = 16
 # Filtered samples are a loop in one frame; 256 leave nothing to be seen.
@@ -61,7 +61,8 @@ class RenderSettings(Struct, frozen=True):
     map, or ``half`` of that along an edge, which is made in a third to a half
     of the time and shows mirrors half as sharp.
 
-    ``ibl`` is how the environment lights: ``split-sum``; ``filtered``, which
+    ``ibl`` is how the environment lights: ``off``, not at all, though it is
+    seen behind the scene; ``split-sum``; ``filtered``, which
     adds ``ibl_samples`` view-dependent samples; ``reference``, which
     integrates it over several frames until each pixel has
     ``reference_samples`` samples (by default 1024, or 16384 where an error

@@ -28,6 +28,7 @@ COMPARISONS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
         "reference lighting": {"ibl": "reference"},
         "filtered lighting": {"ibl": "filtered"},
         "split-sum lighting": {"ibl": "split-sum"},
+        "no light of the environment": {"ibl": "off"},
         "suns left in the map": {"suns": "off", "ibl": "split-sum"},
         "single scattering": {"multiscatter": False},
         "BRDF gltf": {"brdf": "gltf"},

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from moka.model.cameras import Orthographic, Perspective
 from moka.scene.camera import Camera
+from moka.scene.camera_choice import Look
 
 __all__ = ["OrbitControls"]
 
@@ -27,6 +28,8 @@ _ZOOM = 0.88
 
 # The near plane as a part of the distance, as Camera.frame has it.
 _NEAR = 1 / 1000
+# The far plane of a parallel projection, in distances.
+_FAR = 1000.0
 
 
 class OrbitControls:
@@ -148,6 +151,28 @@ class OrbitControls:
         if isinstance(lens, Perspective):
             near = _NEAR * self.distance
             camera.projection = replace(lens, near=near, far=math.inf)
+
+    def change_lens(self, camera: Camera) -> None:
+        """From perspective to parallel, or back; the target looks as large."""
+        height = self._half_height(camera)
+        if isinstance(camera.projection, Orthographic):
+            camera.projection = Camera().projection
+            self.distance = height / self._half_height(camera) * self.distance
+        else:
+            camera.projection = Orthographic(
+                height, height, 0.0, _FAR * self.distance
+            )
+        self.apply(camera)
+
+    def look(self, camera: Camera) -> Look:
+        """What ``camera`` sees from here, in numbers."""
+        x, y, z = self.position.tolist()
+        eye = x, y, z
+        x, y, z = self.target.tolist()
+        lens = camera.projection
+        if isinstance(lens, Orthographic):
+            return Look(eye, (x, y, z), height=2.0 * abs(lens.ymag))
+        return Look(eye, (x, y, z), lens.yfov)
 
     @property
     def position(self) -> NDArray[np.float64]:

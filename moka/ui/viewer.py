@@ -38,7 +38,14 @@ from moka.lighting.environment import Environment, load_environment
 from moka.model import Model, load_model
 from moka.renderer.settings import RenderSettings
 from moka.scene.camera import Camera
-from moka.scene.camera_choice import Orbit, choose_camera, parse_camera
+from moka.scene.camera_choice import (
+    Look,
+    Orbit,
+    choose_camera,
+    look_text,
+    parse_camera,
+)
+from moka.scene.lights import Light
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
 from moka.ui.comparison import Comparison
@@ -47,11 +54,14 @@ from moka.ui.frame_times import PASS_INTERFACE, FrameTimes, mark_passes
 from moka.ui.interface import Interface
 from moka.ui.lighting_error import SAMPLES, ErrorMeasurement
 from moka.ui.orbit_controls import OrbitControls
+from moka.ui.panels.camera import CameraPanel
 from moka.ui.panels.comparison import ComparisonPanel
 from moka.ui.panels.environment import EnvironmentPanel, LightingPanel
 from moka.ui.panels.help import draw_help
 from moka.ui.panels.inspector import InspectorPanel
+from moka.ui.panels.lights import LightsPanel
 from moka.ui.panels.model import ModelPanel
+from moka.ui.panels.output import OutputPanel, unused_path
 from moka.ui.panels.panel import Panel
 from moka.ui.panels.picture import PicturePanel
 from moka.ui.panels.profiler import ProfilerPanel
@@ -59,6 +69,11 @@ from moka.ui.panels.scene_tree import SceneTreePanel
 from moka.ui.panels.timeline import draw_timeline, toggle_playing
 from moka.ui.panels.view import ViewPanel
 from moka.ui.picking import begin_pick, finish_pick
+from moka.ui.preferences import (
+    Preferences,
+    save_preferences,
+    with_recent,
+)
 from moka.ui.selection import draw_box
 
 __all__ = ["Viewer"]
@@ -75,6 +90,9 @@ _DOUBLE_CLICK = 0.4
 # Distances to the target per second of flight.
 _FLIGHT = 1.0
 
+# Of the window's height, a second; half a turn is the height.
+_ROTATION = 0.2 / math.pi
+
 _COLUMN = 300.0
 
 MODEL_SUFFIXES = (".gltf", ".glb")
@@ -88,15 +106,22 @@ class Viewer(App):
     has been read; ``selection`` the row of a node of it. ``debug_view`` is
     a name of :data:`moka.renderer.debug_view.DEBUG_VIEWS` or None. ``error``
     is the last thing that went wrong, for a person to read. ``comparison``
-    is what stands beside the picture, ``measurement`` the last one of the
+    is what stands beside the picture, ``added_lights`` those that are no
+    file's, ``message`` what to tell, ``measurement`` the last one of the
     light's error, ``times`` where the time of frames goes.
     """
 
     continuous = False
 
-    def __init__(self, request: RenderRequest | None = None) -> None:
+    def __init__(
+        self,
+        request: RenderRequest | None = None,
+        preferences: Preferences | None = None,
+    ) -> None:
         super().__init__()
         self.begun = request or RenderRequest()
+        self.preferences = preferences or Preferences()
+        self._remembers = preferences is not None
         self.controls = OrbitControls()
         self.model: SceneModel | None = None
         self.model_source: Any = self.begun.source
@@ -104,19 +129,29 @@ class Viewer(App):
         self.selection: int | None = None
         self.error: str | None = None
         self.debug_view: str | None = None
-        self.shows_panels = True
+        self.shows_panels = self.preferences.shows_panels
         self.shows_help = False
         self.panels: list[Panel] = [
             ModelPanel(),
+            CameraPanel(),
             PicturePanel(),
             EnvironmentPanel(),
+            LightsPanel(),
             LightingPanel(),
             ViewPanel(),
             ComparisonPanel(),
             SceneTreePanel(),
             InspectorPanel(),
             ProfilerPanel(),
+            OutputPanel(),
         ]
+        self.added_lights: list[Light] = []
+        self.auto_rotates = self.preferences.auto_rotates
+        opened = self.preferences.open_panels
+        if opened is not None:
+            for panel in self.panels:
+                panel.starts_open = panel.title in opened
+        self.message: str | None = None
         self.times = FrameTimes()
         self.comparison = Comparison()
         self.measurement: ErrorMeasurement | None = None
@@ -142,6 +177,7 @@ class Viewer(App):
         self.scene.background = begun.background
         self.scene.environment_rotation = begun.environment_rotation
         self.scene.environment_intensity = begun.environment_intensity
+        self.scene.background_blur = begun.background_blur
         self.controls.apply(self.camera)
         self.open_environment(self.environment_source)
         self.open_model(self.model_source)
@@ -177,6 +213,9 @@ class Viewer(App):
         self._reload()
         self._take_reads()
         self._fly(time.delta)
+        if self.auto_rotates and not self._pressed_at:
+            self.controls.orbit(-_ROTATION * time.delta, 0.0)
+            self._look()
         if self._is_moving():
             self.request_redraw()
         if self._settling or self._reads or self._work.doing:
@@ -212,6 +251,8 @@ class Viewer(App):
         """End the work in the background."""
         self._watcher.close()
         self._work.close()
+        if self._remembers:
+            save_preferences(self._chosen())
         for panel in self.panels:
             panel.close()
         self.interface.close()
@@ -323,6 +364,11 @@ class Viewer(App):
         self._wants_picture = Path(path)
         self.request_redraw()
 
+    def tell(self, message: str) -> None:
+        """Show a message until something else happens."""
+        self.message = message
+        self.request_redraw()
+
     def measure_error(self) -> None:
         """Begin to compare the light of this view with reference lighting."""
         self.measurement = ErrorMeasurement(
@@ -332,16 +378,6 @@ class Viewer(App):
 
     def request(self) -> RenderRequest:
         """What would render the picture that is seen now."""
-        controls = self.controls
-        bounds = self.scene.bounds()
-        centre = np.zeros(3) if bounds is None else np.mean(bounds, axis=0)
-        is_orbit = np.allclose(
-            controls.target, centre, atol=1e-6 * controls.distance
-        )
-        orbit = (
-            f"orbit:{math.degrees(controls.yaw):.6g},"
-            f"{math.degrees(controls.pitch):.6g},{controls.distance:.6g}"
-        )
         time, animation = 0.0, None
         if self.model is not None and self.model.model.animations:
             current = self.model.animations.current
@@ -354,8 +390,8 @@ class Viewer(App):
             environment_rotation=self.scene.environment_rotation,
             environment_intensity=self.scene.environment_intensity,
             background=self.scene.background,
-            # A camera that looks elsewhere has no name on the command line.
-            camera=orbit if is_orbit else self.camera,
+            background_blur=self.scene.background_blur,
+            camera=look_text(self.controls.look(self.camera)),
             size=self.size,
             settings=self.settings,
             time=time,
@@ -379,13 +415,16 @@ class Viewer(App):
             case Key.F11 if self.window is not None:
                 self.window.fullscreen = not self.window.fullscreen
             case Key.F12:
-                self.save_picture(_unused("moka", ".png"))
+                self.save_picture(unused_path(Path("moka.png")))
             case Key.SPACE:
                 toggle_playing(self)
             case Key.TAB | Key.H:
                 self.shows_panels = not self.shows_panels
             case Key.C if is_control and self.window is not None:
                 self.window.clipboard = self.command()
+                self.tell("copied: moka render ...")
+            case Key.R:
+                self.auto_rotates = not self.auto_rotates
             case Key.C:
                 self.next_camera()
             case Key.F:
@@ -396,6 +435,7 @@ class Viewer(App):
     def _click(self, event: MouseButtonEvent) -> None:
         self.comparison.is_dragged = False
         if event.pressed:
+            self.message = None
             is_ours = not self.interface.wants_pointer
             if is_ours and self.comparison.take(event.x, self._area()[0]):
                 return
@@ -511,6 +551,13 @@ class Viewer(App):
             else:
                 self.model.animations.play()
         self.model_source = source
+        if _is_path(source):
+            self.preferences = replace(
+                self.preferences,
+                recent_models=with_recent(
+                    self.preferences.recent_models, source
+                ),
+            )
         self.selection = None
         self.error = None
         self._watch()
@@ -523,6 +570,9 @@ class Viewer(App):
         choice = begun.camera if is_first else None
         if isinstance(choice, str):
             choice = parse_camera(choice)
+        if isinstance(choice, Look):
+            self._look_as(choice)
+            return
         if isinstance(choice, Orbit) or (
             choice is None and not self.scene.cameras
         ):
@@ -531,6 +581,12 @@ class Viewer(App):
         if not isinstance(choice, Camera):
             choice = choose_camera(self.scene, choice, width / height)
         self.look_through(choice)
+
+    def _look_as(self, look: Look) -> None:
+        camera = look.camera()
+        self.camera.projection = camera.projection
+        self.controls.look_from(camera, math.dist(look.eye, look.target))
+        self._look()
 
     def _orbit(self, orbit: Orbit) -> None:
         self.controls.yaw = orbit.yaw
@@ -545,6 +601,13 @@ class Viewer(App):
     ) -> None:
         self.scene.environment = environment
         self.environment_source = source
+        if _is_path(source) and Path(source).exists():
+            self.preferences = replace(
+                self.preferences,
+                recent_environments=with_recent(
+                    self.preferences.recent_environments, source
+                ),
+            )
         self.error = None
         self._watch()
         self.request_redraw()
@@ -594,6 +657,26 @@ class Viewer(App):
         if _is_among(self.environment_source, changed):
             self.open_environment(self.environment_source)
 
+    def _chosen(self) -> Preferences:
+        """What is to be remembered."""
+        settings = self.settings
+        source = self.environment_source
+        return replace(
+            self.preferences,
+            size=self._window_size(),
+            shows_panels=self.shows_panels,
+            open_panels=tuple(
+                panel.title for panel in self.panels if panel.is_open
+            ),
+            environment=_remembered(source),
+            environment_intensity=self.scene.environment_intensity,
+            background_blur=self.scene.background_blur,
+            exposure=settings.exposure,
+            tone_map=settings.tone_map,
+            gamma=settings.gamma,
+            auto_rotates=self.auto_rotates,
+        )
+
     def _remove_model(self) -> None:
         if self.model is not None:
             self.model.remove()
@@ -625,9 +708,12 @@ class Viewer(App):
                 np.ascontiguousarray(read.data[::-1]),
                 tone_map=settings.tone_map,
                 exposure=settings.exposure,
+                gamma=settings.gamma,
             )
             self._work.start(
-                f"writing {path}", partial(image.save, path), _nothing
+                f"writing {path}",
+                partial(image.save, path),
+                lambda _: self.tell(f"saved {path}"),
             )
 
         self.when_read([read], save)
@@ -707,7 +793,8 @@ class Viewer(App):
             opened = (
                 imgui.TreeNodeFlags_.default_open if panel.starts_open else 0
             )
-            if imgui.collapsing_header(panel.title, opened):
+            panel.is_open = imgui.collapsing_header(panel.title, opened)
+            if panel.is_open:
                 imgui.push_id(panel.title)
                 panel.draw(imgui, self)
                 imgui.pop_id()
@@ -717,7 +804,7 @@ class Viewer(App):
     def _draw_state(self, imgui: Any, size: tuple[int, int]) -> None:
         """What is being done, and what went wrong, at the lower left."""
         doing = self._work.doing
-        if doing is None and self.error is None:
+        if doing is None and self.error is None and self.message is None:
             return
         imgui.set_next_window_pos((8, size[1] - 8), pivot=(0, 1))
         flags = imgui.WindowFlags_
@@ -728,6 +815,8 @@ class Viewer(App):
         )
         if doing is not None:
             imgui.text(f"{doing} ...")
+        elif self.message is not None:
+            imgui.text(self.message)
         if self.error is not None:
             imgui.push_text_wrap_pos(0.6 * size[0])
             imgui.text_colored((1.0, 0.5, 0.4, 1.0), self.error)
@@ -743,25 +832,21 @@ def _name(source: Any) -> str:
     return "the demo scene" if source is None else "a model"
 
 
+def _is_path(source: Any) -> bool:
+    return isinstance(source, str | os.PathLike)
+
+
+def _remembered(source: Any) -> str:
+    """How an environment is found again from any folder."""
+    if not _is_path(source):
+        return Preferences().environment
+    path = Path(source)
+    return str(path.absolute() if path.is_file() else source)
+
+
 def _is_among(source: Any, changed: set[Path]) -> bool:
-    return (
-        isinstance(source, str | os.PathLike)
-        and Path(source).resolve() in changed
-    )
-
-
-def _unused(stem: str, suffix: str) -> Path:
-    """The first of moka.png, moka.1.png, ... that is not there yet."""
-    path, number = Path(stem + suffix), 0
-    while path.exists():
-        number += 1
-        path = Path(f"{stem}.{number}{suffix}")
-    return path
+    return _is_path(source) and Path(source).resolve() in changed
 
 
 def _identity(value: Any) -> Any:
     return value
-
-
-def _nothing(_: None) -> None:
-    pass

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment, Sun
 from moka.material.material import Material, Texture
-from moka.model.geometry import quad, sphere
+from moka.model.geometry import cube, quad, sphere
 from tests.support.pictures import (
     draw_radiance,
     draw_with_display,
@@ -239,3 +239,20 @@ def test_a_sun_is_occluded_like_the_rest_of_its_environment(
         picture = draw_radiance(egl_device, scene, square_camera())
         shades.append(float(picture[16, 16, 0]))
     assert shades[1] == pytest.approx(shades[0] * 128 / 255, rel=1e-3)
+
+
+def test_an_environment_that_is_off_is_seen_and_lights_nothing(
+    egl_device: GraphicsDevice,
+) -> None:
+    uniform = Environment(np.full((4, 8, 3), 2.0, np.float32))
+    block = cube(0.5)
+    scene = scene_of([(block, Material(), np.eye(4))], uniform)
+    camera = looking((0, 0, -1), math.radians(40), (0, 0, 3))
+    lit, dark = (
+        draw_radiance(egl_device, scene, camera, (16, 16), ibl=ibl)
+        for ibl in ("split-sum", "off")
+    )
+    np.testing.assert_allclose(dark[0, 0, :3], 2.0, rtol=1e-3)
+    np.testing.assert_allclose(lit[0, 0, :3], 2.0, rtol=1e-3)
+    assert lit[8, 8, :3].min() > 0.5
+    assert dark[8, 8, :3].max() == 0.0

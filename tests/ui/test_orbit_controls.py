@@ -143,3 +143,34 @@ def test_a_box_is_framed_from_the_same_side() -> None:
     )
     places = np.array([seen(camera, corner) for corner in corners])
     assert (np.abs(places) <= (1.5, 1.0)).all()
+
+
+def test_another_lens_shows_the_target_as_large() -> None:
+    camera, controls = Camera(), OrbitControls()
+    controls.distance = 3.0
+    controls.apply(camera)
+    position = controls.position
+    controls.change_lens(camera)
+    lens = camera.projection
+    assert isinstance(lens, Orthographic)
+    assert lens.ymag == pytest.approx(3.0 * math.tan(math.radians(22.5)))
+    controls.change_lens(camera)
+    assert isinstance(camera.projection, Perspective)
+    np.testing.assert_allclose(controls.position, position)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_a_look_is_what_the_camera_sees(parallel: bool) -> None:
+    camera, controls = Camera(Perspective(0.6)), OrbitControls()
+    controls.target = np.array([0.5, -1.25, 3.0])
+    controls.orbit(0.3, -0.2)
+    controls.apply(camera)
+    if parallel:
+        controls.change_lens(camera)
+    again = controls.look(camera).camera()
+    np.testing.assert_allclose(
+        again.view_matrix, camera.view_matrix, atol=1e-12
+    )
+    np.testing.assert_allclose(
+        again.projection_matrix(1.5), camera.projection_matrix(1.5)
+    )

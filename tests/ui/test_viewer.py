@@ -1,9 +1,12 @@
 """The viewer in a real window, with a person at mouse and keyboard."""
 
+import math
+import shlex
 import shutil
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +15,13 @@ from PIL import Image as PillowImage
 import moka
 from moka.app.events import DropEvent
 from moka.app.render_session import RenderRequest
+from moka.cli.main import main
 from moka.core import resources
+from moka.core.radiance_hdr import write_radiance_hdr
 from moka.graphics.shader_source import forget_shaders
 from moka.material.material import Material
 from moka.model import cube, model_of, save_model
+from moka.model.cameras import Perspective
 from moka.ui.viewer import Viewer
 from tests.support.display import running_display
 from tests.support.person import Person
@@ -338,3 +344,93 @@ def test_the_profiler_shows_where_time_goes(watch: Watch) -> None:
         assert viewer.frame.wait().gl_draws > 0
 
     watch(story)
+
+
+def test_the_copied_command_makes_the_picture_that_is_seen(
+    watch: Watch, tmp_path: Path
+) -> None:
+    saved = tmp_path / "seen.png"
+
+    def story(person: Person, viewer: Viewer) -> None:
+        # Away from the centre, through another lens, and encoded otherwise.
+        viewer.controls.orbit(0.2, 0.1)
+        viewer.controls.pan(0.05, 0.1, viewer.camera)
+        viewer.controls.apply(viewer.camera)
+        viewer.camera.projection = Perspective(math.radians(30), near=0.004)
+        viewer.scene.background_blur = 0.3
+        viewer.change_settings(gamma=1.8, exposure=-1.0, brdf="karis")
+        drawn = {viewer.frame}
+
+        def is_drawn() -> bool:
+            drawn.add(viewer.frame)
+            viewer.request_redraw()
+            return len(drawn) > 3
+
+        person.wait("frames of it", is_drawn)
+        viewer.save_picture(saved)
+        person.wait("a file", lambda: viewer.message == f"saved {saved}")
+        person.act("mousemove 60 60 key ctrl+c")
+        person.wait("a copy", lambda: "copied" in (viewer.message or ""))
+        assert viewer.window is not None
+        (tmp_path / "command").write_text(viewer.command())
+
+    watch(story)
+    words = shlex.split((tmp_path / "command").read_text())
+    assert words[:2] == ["moka", "render"]
+    again = tmp_path / "again.png"
+    words[-1] = str(again)
+    assert main([*words[1:], "--backend", "egl"]) == 0
+    with PillowImage.open(saved) as seen, PillowImage.open(again) as made:
+        assert seen.size == made.size
+        difference = np.asarray(seen, int) - np.asarray(made, int)
+    assert is_red(np.asarray(PillowImage.open(saved).convert("RGB"))).any()
+    # Camera matrices that differ in their last digits.
+    assert (np.abs(difference).max(axis=2) > 1).mean() < 1e-3
+
+
+def test_what_was_chosen_is_remembered(
+    display: str,  # noqa: ARG001
+    model: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    monkeypatch.setenv("MOKA_CONFIG_DIR", str(tmp_path / "config"))
+    environment = tmp_path / "bright.hdr"
+    write_radiance_hdr(environment, np.full((4, 8, 3), 2.0, np.float32))
+    words = ["view", str(model), "--exposure", "-1", "--size", "400x300"]
+    seen: list[Viewer] = []
+
+    def draw(viewer: Viewer, *given: Any) -> None:
+        seen.append(viewer)
+        original(viewer, *given)
+        if viewer.environment_source != str(environment):
+            viewer.open_environment(str(environment))
+        elif viewer.model is not None and not viewer._work.doing:
+            viewer.change_settings(tone_map="agx")
+            viewer.quit()
+        viewer.request_redraw()
+
+    original = Viewer.draw
+    monkeypatch.setattr(Viewer, "draw", draw)
+    assert main(words) == 0
+    first = seen[-1]
+    seen.clear()
+    assert main(["view", "--exposure", "0.5"]) == 0
+    again = seen[0]
+    assert again.begun.environment == str(environment)
+    assert again.settings.tone_map == "agx"
+    assert again.begun.settings.exposure == 0.5
+    assert again.begun.size == first.begun.size == SIZE
+    assert str(model) in again.preferences.recent_models
+    environment.unlink()
+    monkeypatch.setattr(Viewer, "draw", lambda viewer, *_: see(viewer))
+
+    def see(viewer: Viewer) -> None:
+        seen.append(viewer)
+        viewer.quit()
+
+    assert main(["view"]) == 0
+    assert seen[-1].begun.environment == "studio"
+    assert seen[-1].settings.tone_map == "agx"
+    assert main(["view", "--no-preferences", "--size", "64x64"]) == 0
+    assert seen[-1].settings.tone_map == "neutral"

@@ -1,6 +1,7 @@
 """The light around the model, and how it is computed."""
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moka.renderer.settings import BRDFS, DIFFUSE_MODELS, IBL_MODES
@@ -25,8 +26,10 @@ class EnvironmentPanel(Panel):
         """The widgets."""
         scene = viewer.scene
         name = str(viewer.environment_source)
-        names = _BUILT_IN if name in _BUILT_IN else (*_BUILT_IN, name)
-        wanted = choice(imgui, "environment", name, names)
+        files = list(viewer.preferences.recent_environments)
+        if name not in _BUILT_IN and name not in files:
+            files.insert(0, name)
+        wanted = _picked(imgui, name, files)
         if wanted != name:
             viewer.open_environment(wanted)
         degrees = slider(
@@ -79,3 +82,24 @@ class LightingPanel(Panel):
             imgui.text(f"{lighting['samples_per_pixel']:.0f} samples a pixel")
             if lighting["estimated_error"] is not None:
                 imgui.text(f"error {lighting['estimated_error']:.2%}")
+
+
+def _picked(imgui: Any, now: str, files: list[str]) -> str:
+    """One of the built-in environments, or of files by their last names."""
+    wanted = now
+    shown = now if now in _BUILT_IN else Path(now).name
+    if imgui.begin_combo("environment", shown):
+        for name in _BUILT_IN:
+            if imgui.selectable(name, name == now)[0]:
+                wanted = name
+        if files:
+            imgui.separator_text("opened before")
+        for number, file in enumerate(files):
+            imgui.push_id(number)
+            if imgui.selectable(Path(file).name, file == now)[0]:
+                wanted = file
+            if imgui.is_item_hovered():
+                imgui.set_tooltip(file)
+            imgui.pop_id()
+        imgui.end_combo()
+    return wanted

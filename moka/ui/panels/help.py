@@ -14,6 +14,7 @@ _GESTURES = (
     ("F", "frame the selection"),
     ("Home", "frame everything"),
     ("C", "next camera of the file"),
+    ("R", "turn around by itself"),
     ("Space", "play or pause"),
     ("H or Tab", "hide and show the panels"),
     ("F1", "this help"),

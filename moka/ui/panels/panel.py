@@ -14,6 +14,7 @@ class Panel(ABC):
 
     title: str
     starts_open = False
+    is_open = False
 
     def is_useful(self, _viewer: "Viewer") -> bool:
         """Whether there is anything to show for what is open."""

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from moka.core.tone_map import TONE_MAPS
+from moka.renderer.settings import MOST_GAMMA
 from moka.ui.panels.panel import Panel
 from moka.ui.widgets import choice, slider
 
@@ -29,6 +30,11 @@ class PicturePanel(Panel):
         tone_map = choice(
             imgui, "tone map", settings.tone_map, tuple(TONE_MAPS)
         )
+        is_power, power = settings.gamma is not None, settings.gamma or 2.2
+        _, is_power = imgui.checkbox("power gamma", is_power)
+        if is_power:
+            power = slider(imgui, "gamma", power, 0.1, MOST_GAMMA, "%.2f")
+            power = min(max(power, 0.01), MOST_GAMMA)
         names = {value: name for name, value in _SAMPLES.items()}
         samples = choice(
             imgui,
@@ -39,6 +45,7 @@ class PicturePanel(Panel):
         viewer.change_settings(
             exposure=exposure,
             tone_map=tone_map,
+            gamma=power if is_power else None,
             samples=_SAMPLES.get(samples, settings.samples),
         )
         self._background(imgui, viewer)
@@ -54,6 +61,9 @@ class PicturePanel(Panel):
             scene.background = (
                 wanted if wanted != "colour" else (0.05, 0.05, 0.05)
             )
+        if scene.background == "environment":
+            blur = slider(imgui, "blur", scene.background_blur, 0.0, 1.0)
+            scene.background_blur = min(max(blur, 0.0), 1.0)
         if not isinstance(scene.background, str):
             changed, colour = imgui.color_edit3(
                 "colour",
