@@ -1,8 +1,11 @@
 """Every example runs headless, and its picture shows what it claims."""
 
+import ast
 import importlib.util
+import json
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -33,7 +36,11 @@ def luminance(pixels: NDArray[np.float32]) -> NDArray[np.float64]:
 
 
 def test_every_example_is_tested() -> None:
-    names = {path.stem for path in EXAMPLES.glob("*.py")}
+    names = {
+        path.stem
+        for path in EXAMPLES.iterdir()
+        if path.suffix in (".py", ".ipynb")
+    }
     tested = {
         name.removeprefix("test_").partition("__")[0]
         for name in globals()
@@ -232,6 +239,36 @@ def test_embedding__keeps_what_the_host_has_set() -> None:
     is_wall = distance.min(axis=-1) < 2
     assert is_wall[10].mean() > 0.8
     assert 0.05 < 1 - is_wall[20:70, 20:140].mean() < 0.9
+
+
+def test_notebook__shows_pictures_and_a_viewer() -> None:
+    pytest.importorskip("jupyter_rfb", reason="jupyter_rfb is not installed")
+    text = (EXAMPLES / "notebook.ipynb").read_text(encoding="utf-8")
+    cells = [
+        "".join(cell["source"])
+        for cell in json.loads(text)["cells"]
+        if cell["cell_type"] == "code"
+    ]
+    names: dict[str, Any] = {}
+    picture, viewer, _, changed = (run_cell(cell, names) for cell in cells)
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    assert viewer.get_frame().shape == (270, 480, 4)
+    assert changed.size == picture.size
+    difference = luminance(changed.pixels) - luminance(picture.pixels)
+    assert np.abs(difference).mean() > 0.05
+    viewer.close()
+
+
+def run_cell(source: str, names: dict[str, Any]) -> Any:
+    """Run a cell; the value of its last line, if that has one."""
+    *statements, last = ast.parse(source).body
+    if not isinstance(last, ast.Expr):
+        exec(compile(source, "cell", "exec"), names)
+        return None
+    module = ast.Module(statements, type_ignores=[])
+    exec(compile(module, "cell", "exec"), names)
+    expression = ast.Expression(last.value)
+    return eval(compile(expression, "cell", "eval"), names)
 
 
 def is_grey(pixels: NDArray[np.int_]) -> NDArray[np.bool_]:

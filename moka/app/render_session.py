@@ -162,8 +162,8 @@ class RenderSession:
         self.model = model
         self.camera = camera
         self._statistics = statistics
-        self._device = device
-        self._renderer = renderer
+        self.device = device
+        self.renderer = renderer
         self._keep_map = keep_map
 
     @classmethod
@@ -253,12 +253,12 @@ class RenderSession:
         """
         from moka.commands.command_list import CommandList
 
-        renderer, request = self._renderer, self.request
+        renderer, request = self.renderer, self.request
         commands = CommandList()
         renderer.draw(self.scene, self.camera, commands)
         while not renderer.is_complete:
             # What the GPU tells of the error comes with the frame.
-            self.count(self._device.submit(commands))
+            self.count(self.device.submit(commands))
             commands = CommandList()
             renderer.draw(self.scene, self.camera, commands)
         display = renderer.read_display(commands) if want_display else None
@@ -268,7 +268,7 @@ class RenderSession:
             values = renderer.read_values(
                 self.scene, self.camera, request.aovs, commands
             )
-        frame = self._device.submit(commands)
+        frame = self.device.submit(commands)
         return PendingImage(self, frame, radiance, display, values)
 
     def count(self, frame: "Frame") -> None:
@@ -279,10 +279,10 @@ class RenderSession:
 
     def report(self) -> None:
         """Write into the statistics what is known when all is drawn."""
-        info, statistics = self._device.info, self._statistics
-        for stage, seconds in self._device.stage_seconds().items():
+        info, statistics = self.device.info, self._statistics
+        for stage, seconds in self.device.stage_seconds().items():
             statistics.add_time(stage, seconds)
-        statistics.lighting.update(self._renderer.lighting_statistics)
+        statistics.lighting.update(self.renderer.lighting_statistics)
         statistics.gl.update(
             backend=info.kind,
             vendor=info.vendor,
@@ -292,9 +292,9 @@ class RenderSession:
 
     def keep_lighting(self) -> None:
         """Write preintegrated lighting that is new to the disk cache."""
-        if self._renderer.has_lighting_to_keep:
+        if self.renderer.has_lighting_to_keep:
             with self._statistics.stage("store"):
-                self._renderer.keep_lighting()
+                self.renderer.keep_lighting()
         if self._keep_map is not None:
             with self._statistics.stage("store"):
                 self._keep_map()
