@@ -24,7 +24,7 @@ vec3 colour_of_object(uint number) {
     return mix(vec3(0.25), vec3(0.95), clamp(pure, 0.0, 1.0));
 }
 
-// Blue for the full texture, then a step of the rainbow a level.
+// Blue for 0, then a step of the rainbow for each.
 vec3 colour_of_level(float level) {
     float part = clamp(level / 8.0, 0.0, 1.0);
     return clamp(
@@ -54,6 +54,8 @@ void main() {
         shown = vec3(view.x / (view.x + value.w));
 #elif defined(MOKA_VIEW_LEVEL)
         shown = colour_of_level(value.w);
+#elif defined(MOKA_VIEW_COUNT)
+        shown = colour_of_level(value.x - 1.0);
 #elif defined(MOKA_VIEW_W)
         shown = vec3(value.w);
 #elif defined(MOKA_VIEW_Z)

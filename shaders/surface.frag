@@ -52,6 +52,11 @@ void main() {
     Surface surface = make_surface(
         base.rgb, packed_values.z, packed_values.y, packed_values.x,
         shading_normal(row), view);
+#ifdef MOKA_PART_IRRADIANCE
+    // Of a white base without an interface: E / pi.
+    surface.diffuse_colour = vec3(1.0);
+    surface.f0 = surface.f90 = vec3(0.0);
+#endif
     vec3 light = received_light(surface);
 #if defined(MOKA_PART_DIFFUSE) || defined(MOKA_PART_SPECULAR)
     // What is left without a diffuse base is what the interface reflects.
@@ -62,7 +67,7 @@ void main() {
 #else
     light = max(light - specular, 0.0);
 #endif
-#elif defined(MOKA_EMISSIVE)
+#elif defined(MOKA_EMISSIVE) && !defined(MOKA_PART_IRRADIANCE)
     light += emission(row);
 #endif
 #endif

@@ -1,6 +1,7 @@
 // What a surface is, instead of how it looks: one target for each four
 // values that are wanted (moka.renderer.surface_values names them).
 
+#include "include/fresnel.glsl"
 #include "include/material.glsl"
 #include "include/logarithmic_depth.glsl"
 #include "include/shading_normal.glsl"
@@ -18,6 +19,12 @@ layout(location = MOKA_VALUES_EMISSION_METALNESS) out vec4 emission_metalness;
 #endif
 #ifdef MOKA_VALUES_TANGENT_LEVEL
 layout(location = MOKA_VALUES_TANGENT_LEVEL) out vec4 tangent_level;
+#endif
+#ifdef MOKA_VALUES_FRESNEL
+layout(location = MOKA_VALUES_FRESNEL) out vec4 fresnel;
+#endif
+#ifdef MOKA_VALUES_OVERDRAW
+layout(location = MOKA_VALUES_OVERDRAW) out vec4 overdraw;
 #endif
 #ifdef MOKA_VALUES_UV_OCCLUSION_OBJECT
 layout(location = MOKA_VALUES_UV_OCCLUSION_OBJECT) out vec4 uv_occlusion_object;
@@ -83,6 +90,16 @@ void main() {
 #endif
 #ifdef MOKA_VALUES_EMISSION_METALNESS
     emission_metalness = vec4(emission(row), packed_values.z);
+#endif
+#ifdef MOKA_VALUES_FRESNEL
+    // As lighting.glsl mixes a dielectric and a metal.
+    vec3 f0 = mix(vec3(0.04), base.rgb, packed_values.z);
+    float cosine = clamp(dot(shading_normal(row), surface_view()), 0.0, 1.0);
+    fresnel = vec4(fresnel_schlick(cosine, f0, vec3(1.0)), 0.0);
+#endif
+#ifdef MOKA_VALUES_OVERDRAW
+    // Added up by the blending.
+    overdraw = vec4(1.0);
 #endif
 #ifdef MOKA_VALUES_TANGENT_LEVEL
     tangent_level = vec4(value_of_tangent(), base_colour_level(row));

@@ -37,6 +37,7 @@ AOVS = {
     "occlusion": Aov("", "ambient visibility, 1 in the open"),
     "tangent": Aov("XYZ", "direction of the first texture coordinate"),
     "mip-level": Aov("", "level of the base colour texture that is sampled"),
+    "fresnel": Aov("RGB", "reflectance at the angle that is seen, 0 to 1"),
     "uv": Aov("UV", "the first texture coordinates of the vertices"),
     "object-id": Aov(
         "",

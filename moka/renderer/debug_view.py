@@ -49,6 +49,8 @@ DEBUG_VIEWS = MappingProxyType(
         "texture coordinates": DebugView("uv", "UV"),
         "occlusion": DebugView("occlusion", "Z"),
         "emission": DebugView("emission", "EMISSION"),
+        "Fresnel": DebugView("fresnel", "BASE_COLOUR"),
+        "overdraw": DebugView("overdraw", "COUNT"),
         "depth": DebugView("depth", "DEPTH"),
         "objects": DebugView("object-id", "OBJECT"),
         "mip level": DebugView("mip-level", "LEVEL"),

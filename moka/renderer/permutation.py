@@ -91,7 +91,8 @@ class LightingDescription(Struct, frozen=True):
     that holds them; ``positional`` tells whether some are anywhere but in
     infinity, ``turned`` whether the environment has a rotation. ``ibl`` is
     how the environment lights, ``part`` which of the light is drawn:
-    ``all``, ``diffuse`` or ``specular``. What the target wants stands here
+    ``all``, ``diffuse``, ``specular``, or ``irradiance``, that of surfaces
+    which are white and reflect nothing else. What the target wants stands here
     too: ``float_target``, ``logarithmic_depth``, and the groups of
     ``values`` that are drawn in the place of radiance, which
     :mod:`moka.renderer.surface_values` names.
@@ -137,7 +138,7 @@ class LightingDescription(Struct, frozen=True):
                 defines["MOKA_TURNED_ENVIRONMENT"] = 1
             if self.ibl != "split-sum":
                 defines[f"MOKA_IBL_{_macro(self.ibl)}"] = 1
-            if Feature.DIFFUSE in features:
+            if Feature.DIFFUSE in features or self.part == "irradiance":
                 defines["MOKA_IRRADIANCE"] = 1
                 if self.harmonics:
                     defines["MOKA_IRRADIANCE_SH"] = 1

@@ -412,11 +412,14 @@ class Renderer:
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
         is_lit = self.settings.ibl != "off"
+        has_diffuse = materials.has_diffuse or (
+            materials.has_lit and self.settings.light_part == "irradiance"
+        )
         changed = self._sources.update_maps(
             scene.environment,
             background=scene.background == "environment",
             specular=materials.has_lit and is_lit,
-            irradiance=materials.has_diffuse and is_lit,
+            irradiance=has_diffuse and is_lit,
             suns=self.settings.suns if is_lit else "off",
             irradiance_as=self.settings.irradiance,
             ibl=self.settings.ibl,
@@ -440,12 +443,13 @@ class Renderer:
     ) -> PreparedScene:
         settings = self.settings
         maps = self._sources.maps
+        is_bare = settings.light_part == "irradiance"
         lighting = LightingDescription(
             maps.lights_surfaces and settings.ibl != "off",
             capacity,
             settings.brdf,
-            settings.diffuse,
-            settings.multiscatter,
+            "lambert" if is_bare else settings.diffuse,
+            settings.multiscatter and not is_bare,
             settings.float_output or self._accumulates,
             self._sources.harmonics is not None,
             # Of uniform light split-sum is exact, and there is no such cube.

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from moka.commands.command_buffer import CommandBuffer
 from moka.commands.command_list import CommandList
@@ -92,8 +93,17 @@ class Sky:
         if cube is not None:
             self.defines["MOKA_BLURRED_SKY"] = 1
             self.binding = TextureBinding("specular_cube", cube, CUBE_SAMPLER)
-            # Where lighting.glsl reads it, and the width of such a lobe.
+            # As lighting.glsl has specular_level and sun_weight; the angle
+            # is the width of such a lobe.
             level = (levels - 1) * blur * (2.0 - blur)
+            if level < 1.0:
+                level = level**4 * (3.0 - 2.0 * level**2)
+            suns = [
+                replace(sun, irradiance=_scaled(sun.irradiance, level))
+                if sun.in_map and level < 1.0
+                else sun
+                for sun in suns
+            ]
             angle = blur**2
         values: dict[str, Any] = {
             "direction_from_clip": view.direction_from_clip(rotation),
@@ -113,6 +123,13 @@ class Sky:
                 for sun, radius in zip(suns, radii, strict=True)
             ]
         self.block = _background(len(suns)).pack(values)
+
+
+def _scaled(
+    irradiance: tuple[float, float, float], by: float
+) -> tuple[float, float, float]:
+    red, green, blue = irradiance
+    return by * red, by * green, by * blue
 
 
 class ScreenPasses:

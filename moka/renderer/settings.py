@@ -28,7 +28,7 @@ REFLECTIONS = ("full", "half")
 
 # Each is a light in every pixel.
 MOST_SUNS = 64
-LIGHT_PARTS = ("all", "diffuse", "specular")
+LIGHT_PARTS = ("all", "diffuse", "specular", "irradiance")
 IBL_MODES = ("split-sum", "filtered", "reference", "off")
 
 DEFAULT_IBL_SAMPLES = 16

@@ -9,12 +9,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Readback
 from moka.commands.descriptors import (
     Attachment,
+    BlendState,
     FramebufferDescriptor,
     PixelFormat,
     TextureDescriptor,
@@ -57,6 +59,10 @@ GROUPS: Mapping[str, Mapping[str, slice]] = {
         "occlusion": slice(2, 3),
         "object-id": slice(3, 4),
     },
+    "fresnel": {"fresnel": slice(0, 3)},
+    # How many surfaces are shaded for a pixel: no value of one of them, and
+    # so not to be asked for together with others.
+    "overdraw": {"overdraw": slice(0, 1)},
     "tangent_level": {"tangent": slice(0, 3), "mip-level": slice(3, 4)},
 }
 
@@ -188,7 +194,10 @@ class SurfaceValues:
             prepared.update_materials(scene.live_materials, buffer)
         buffer.bind_framebuffer(targets.framebuffer)
         buffer.clear((0, 0, 0, 0), 0.0 if is_reversed else 1.0)
-        states = [commands.state_index(state) for state in prepared.states]
+        drawn = prepared.states
+        if "overdraw" in groups:
+            drawn = [replace(each, blend=BlendState.ADDITIVE) for each in drawn]
+        states = [commands.state_index(state) for state in drawn]
         commands.use(prepared.handles)
         commands.draws(
             *self._gatherer.gather(

@@ -10,6 +10,7 @@
 
 #include "include/angles.glsl"
 #include "include/constants.glsl"
+#include "include/fresnel.glsl"
 
 // A punctual light has no extent, and its mirror image in a perfectly smooth
 // surface would have no area. Its lobe is never narrower than the half
@@ -63,19 +64,6 @@ float schlick_k_direct(float roughness) {
 // Karis 2013: k = alpha / 2, for light from an environment.
 float schlick_k_environment(float roughness) {
     return 0.5 * roughness * roughness;
-}
-
-// Schlick 1994, equation 15, generalised to a reflectance f90 at grazing.
-float fresnel_schlick(float cosine, float f0, float f90) {
-    float x = 1.0 - cosine;
-    float squared = x * x;
-    return f0 + (f90 - f0) * (squared * squared * x);
-}
-
-vec3 fresnel_schlick(float cosine, vec3 f0, vec3 f90) {
-    float x = 1.0 - cosine;
-    float squared = x * x;
-    return f0 + (f90 - f0) * (squared * squared * x);
 }
 
 // Lagarde 2011, "Adopting a physically based shading model": the grazing

@@ -58,6 +58,16 @@ def test_a_blurred_background_keeps_its_light(ibl: str) -> None:
     assert steps[1] < 0.5 * steps[0]
 
 
+def test_a_little_blur_counts_no_sun_twice() -> None:
+    """Where the cube has the sun as well as its light."""
+    weights = solid_angles()[..., None]
+    means = [
+        (weights * sphere_of("sky", "split-sum", blur)).sum((0, 1, 2))
+        for blur in (0.02, 0.05, 0.5)
+    ]
+    np.testing.assert_allclose(means[:2], [means[2]] * 2, rtol=0.1)
+
+
 def test_uniform_light_has_nothing_to_blur() -> None:
     blurred = sphere_of("furnace", "split-sum", 0.7)
     np.testing.assert_allclose(blurred, 1.0, rtol=2e-3)

@@ -10,7 +10,7 @@ from moka.commands.command_list import CommandList
 from moka.core.colour import encode_srgb8
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import load_environment
-from moka.material.material import Material
+from moka.material.material import AlphaMode, Material
 from moka.model import demo_model, quad
 from moka.renderer.debug_view import DEBUG_VIEWS
 from moka.renderer.renderer import Renderer
@@ -109,3 +109,49 @@ def test_every_view_draws(device: GraphicsDevice) -> None:
     scene = scene_of([(quad(1.0), MATERIAL, np.eye(4))])
     for name in DEBUG_VIEWS:
         shown(device, scene, name)
+
+
+def test_irradiance_is_that_of_a_white_surface_in_uniform_light(
+    device: GraphicsDevice,
+) -> None:
+    """Also of a metal, which has no diffuse base of its own."""
+    metal = Material(base_colour_factor=(0.2, 0.5, 0.9, 1), metallic_factor=1)
+    scene = scene_of([(quad(1.0), metal, np.eye(4))])
+    scene.environment = load_environment("furnace")
+    for ibl in ("split-sum", "filtered", "reference"):
+        pixels = draw_radiance(
+            device,
+            scene,
+            square_camera(),
+            (5, 5),
+            light_part="irradiance",
+            ibl=ibl,
+            **({"reference_samples": 1024} if ibl == "reference" else {}),
+        )
+        np.testing.assert_allclose(
+            pixels[2, 2, :3], 1.0, rtol=5e-3, err_msg=ibl
+        )
+
+
+def test_fresnel_is_f0_seen_from_the_front(device: GraphicsDevice) -> None:
+    scene = scene_of([(quad(1.0), MATERIAL, np.eye(4))])
+    middle, _ = shown(device, scene, "Fresnel")
+    f0 = 0.2 * 0.04 + 0.8 * np.array([0.25, 0.5, 0.75])
+    assert np.abs(middle - encode_srgb8(f0).astype(float)).max() <= 1
+
+
+def test_overdraw_counts_what_is_shaded(device: GraphicsDevice) -> None:
+    """What is behind is not: opaque surfaces are drawn front to back."""
+    masked = Material(alpha_mode=AlphaMode.MASK, metallic_factor=0.0)
+    mesh = quad(1.0)
+    colours = []
+    for materials in ((MATERIAL,), (MATERIAL, MATERIAL), (MATERIAL, masked)):
+        items = []
+        for number, material in enumerate(materials):
+            place = np.eye(4)
+            place[2, 3] = number
+            items.append((mesh, material, place))
+        middle, _ = shown(device, scene_of(items), "overdraw")
+        colours.append(tuple(middle.tolist()))
+    # The mask is in front, but drawn after what is opaque.
+    assert colours[0] == colours[1] != colours[2]

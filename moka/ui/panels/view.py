@@ -11,7 +11,12 @@ if TYPE_CHECKING:
 
 __all__ = ["ViewPanel"]
 
-_PARTS = {"all light": "all", "diffuse": "diffuse", "specular": "specular"}
+_PARTS = {
+    "all light": "all",
+    "diffuse": "diffuse",
+    "specular": "specular",
+    "irradiance": "irradiance",
+}
 _LUMINANCE = "luminance in stops"
 
 
