@@ -1,7 +1,6 @@
 """Real models, read by moka and by pygltflib, value by value."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pygltflib
@@ -19,6 +18,7 @@ from moka.model import (
     with_tangents,
 )
 from moka.model.morphs import MorphTargets
+from tests.support.oracles.gltf_file import elements
 
 pytestmark = pytest.mark.assets
 
@@ -41,8 +41,6 @@ NAMES = [
     "cubevc.glb",
     "nested.glb",
 ]
-TYPES = {5120: "i1", 5121: "u1", 5122: "i2", 5123: "u2", 5125: "u4", 5126: "f4"}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 @pytest.fixture(scope="module", params=NAMES)
@@ -60,25 +58,6 @@ def other(path: Path) -> pygltflib.GLTF2:
     loaded = pygltflib.GLTF2.load(str(path))
     assert loaded is not None
     return loaded
-
-
-def elements(gltf: pygltflib.GLTF2, index: int) -> np.ndarray[Any, Any]:
-    """An accessor read with pygltflib's own means, row by row."""
-    accessor = gltf.accessors[index]
-    view = gltf.bufferViews[accessor.bufferView]
-    data = gltf.get_data_from_buffer_uri(gltf.buffers[view.buffer].uri)
-    width = WIDTHS[accessor.type]
-    dtype = np.dtype(TYPES[accessor.componentType])
-    start = (view.byteOffset or 0) + (accessor.byteOffset or 0)
-    stride = view.byteStride or width * dtype.itemsize
-    rows = [
-        np.frombuffer(data, dtype, width, start + row * stride)
-        for row in range(accessor.count)
-    ]
-    array = np.stack(rows)
-    if accessor.normalized:
-        array = array / np.iinfo(dtype).max
-    return array
 
 
 def check_primitive(

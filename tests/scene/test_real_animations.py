@@ -1,17 +1,13 @@
 """Animations of real models, against the oracle and pygltflib's reading."""
 
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pygltflib
 import pytest
 
 from moka.model import load_model
 from moka.scene.scene import Scene
-from tests.model.test_sample_models import elements
-from tests.support.oracles.keyframes import sample
+from tests.support.oracles.gltf_file import FileOracle
 
 pytestmark = pytest.mark.assets
 
@@ -21,57 +17,6 @@ NAMES = [
     "MorphStressTest.gltf",
     "Soldier.glb",
 ]
-REST = {
-    "translation": (0, 0, 0),
-    "rotation": (0, 0, 0, 1),
-    "scale": (1, 1, 1),
-}
-
-
-class Oracle:
-    """A file's nodes at one moment, walked one by one."""
-
-    def __init__(self, path: Path) -> None:
-        loaded = pygltflib.GLTF2.load(str(path))
-        assert loaded is not None
-        self.gltf: Any = loaded
-        self.elements = cache(lambda index: elements(loaded, index))
-
-    def moved(self, animation: Any, time: float) -> dict[Any, Any]:
-        """What the channels move, by node and path."""
-        values = {}
-        for channel in animation.channels:
-            sampler = animation.samplers[channel.sampler]
-            times = self.elements(sampler.input)[:, 0].tolist()
-            keys = self.elements(sampler.output)
-            path = channel.target.path
-            values[channel.target.node, path] = sample(
-                times,
-                keys.reshape(len(times), -1),
-                sampler.interpolation,
-                time,
-                rotates=path == "rotation",
-            )
-        return values
-
-    def local(self, index: int, moved: dict[Any, Any]) -> Any:
-        node = self.gltf.nodes[index]
-        if node.matrix is not None:
-            return np.reshape(node.matrix, (4, 4)).T
-        translation, rotation, scale = (
-            np.asarray(
-                moved.get((index, name), getattr(node, name) or REST[name]),
-                np.float64,
-            )
-            for name in REST
-        )
-        x, y, z, w = rotation / np.linalg.norm(rotation)
-        cross = np.array([(0, -z, y), (z, 0, -x), (-y, x, 0)])
-        matrix = np.eye(4)
-        turn = np.eye(3) + 2 * w * cross + 2 * cross @ cross
-        matrix[:3, :3] = turn @ np.diag(scale)
-        matrix[:3, 3] = translation
-        return matrix
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -79,7 +24,7 @@ def test_every_animation_agrees_with_the_oracle(
     assets: Path, name: str
 ) -> None:
     path = assets / "models" / name
-    oracle = Oracle(path)
+    oracle = FileOracle(path)
     scene = Scene()
     model = scene.add(load_model(path))
     of_file = model.model.nodes.source.tolist()
