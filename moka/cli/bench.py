@@ -5,6 +5,8 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 
+from moka.cli.diagnostics import add_diagnostics
+
 __all__ = ["add_arguments", "execute"]
 
 # Each is a module of moka.bench with add_arguments and execute, which imports
@@ -35,12 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             name, help=summary, description=summary, allow_abbrev=False
         )
         add = command.add_argument
-        add(
-            "--debug",
-            action="store_true",
-            default=argparse.SUPPRESS,
-            help="show the traceback of an error",
-        )
+        add_diagnostics(command, nested=True)
         add("--json", metavar="PATH", type=Path, help="write the results")
         add(
             "--plot",

@@ -9,6 +9,7 @@ from functools import partial
 from importlib import import_module
 from typing import NoReturn
 
+from moka.cli.diagnostics import add_diagnostics, log_lines
 from moka.cli.process import INTERRUPTED, run_process
 from moka.core.errors import MokaError, OptionError
 from moka.version import __version__
@@ -62,7 +63,8 @@ def _run(given: Sequence[str], *, owns_process: bool = False) -> int:
         parsed = _parser(given).parse_args(given)
         parsed.started = STARTED
         parsed.owns_process = owns_process
-        return int(parsed.execute(parsed))
+        with log_lines(verbose=parsed.verbose, quiet=parsed.quiet):
+            return int(parsed.execute(parsed))
     except MokaError as error:
         return _fail(str(error), USER_ERROR, debug=debug)
     except KeyboardInterrupt:
@@ -96,11 +98,7 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
         command = commands.add_parser(
             name, help=summary, description=summary, allow_abbrev=False
         )
-        command.add_argument(
-            "--debug",
-            action="store_true",
-            help="show the traceback of an error, and check every GL call",
-        )
+        add_diagnostics(command)
         if name in given:
             # The others are not needed, nor what they import.
             module = import_module(f"moka.cli.{name}")

@@ -47,7 +47,7 @@ def render_sequence(
     statistics = Statistics(arguments.started)
     statistics.add_time("import", time.perf_counter() - arguments.started)
     suffixes = {path.suffix.lower() for path in outputs}
-    with Progress("frame", 0) as progress:
+    with Progress("frame", 0, is_shown=not arguments.quiet) as progress:
 
         def announce(count: int) -> Collection[int]:
             there = (

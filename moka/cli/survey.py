@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+from moka.cli.diagnostics import add_diagnostics
 from moka.core.errors import OptionError
 from moka.survey.grouping import DEFAULT_PATTERN
 
@@ -28,12 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         command = commands.add_parser(
             name, help=summary, description=summary, allow_abbrev=False
         )
-        command.add_argument(
-            "--debug",
-            action="store_true",
-            default=argparse.SUPPRESS,
-            help="show the traceback of an error",
-        )
+        add_diagnostics(command, nested=True)
         add(command)
         command.set_defaults(run=run)
 

@@ -14,16 +14,22 @@ _PERIOD = 0.1
 class Progress:
     """Shows ``done`` of ``total`` steps; silent where no terminal is.
 
-    Leave its ``with`` block to take the line away again.
+    It is silent also if ``is_shown`` is false. Leave its ``with`` block to
+    take the line away again.
     """
 
     def __init__(
-        self, what: str, total: int, stream: TextIO | None = None
+        self,
+        what: str,
+        total: int,
+        stream: TextIO | None = None,
+        *,
+        is_shown: bool = True,
     ) -> None:
         self._what = what
         self.total = total
         self._stream = stream or sys.stderr
-        self._is_shown = self._stream.isatty()
+        self._is_shown = is_shown and self._stream.isatty()
         self._started = time.monotonic()
         self._next = 0.0
         self.done = 0

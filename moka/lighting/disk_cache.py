@@ -14,7 +14,6 @@ is as good as absent and is replaced. Reading maps the file into memory,
 which stays valid when another process replaces or deletes it.
 """
 
-import logging
 import mmap
 import os
 import sys
@@ -31,10 +30,11 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from moka.core.atomic_file import atomic_file
+from moka.core.log import get_logger
 
 __all__ = ["DEFAULT_LIMIT", "DiskCache", "Usage", "cache_folder"]
 
-_LOGGER = logging.getLogger(__name__)
+_LOGGER = get_logger(__name__)
 
 #: Bytes that a cache may fill: sixty environments of 1024 x 512.
 DEFAULT_LIMIT = 512 << 20

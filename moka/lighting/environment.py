@@ -6,7 +6,6 @@ from which every approximation that follows would suffer; as a light it is
 exact.
 """
 
-import logging
 import math
 import os
 from collections.abc import Sequence
@@ -20,6 +19,7 @@ from msgspec.structs import force_setattr
 from numpy.typing import NDArray
 
 from moka.core.errors import EnvironmentMapError, ImageFileError
+from moka.core.log import get_logger
 
 __all__ = [
     "AUTO_SUNS",
@@ -31,7 +31,7 @@ __all__ = [
     "read_map",
 ]
 
-_LOGGER = logging.getLogger(__name__)
+_LOGGER = get_logger(__name__)
 
 #: Suns that ``auto`` makes at most: each is a light in every pixel.
 AUTO_SUNS = 4
@@ -163,7 +163,10 @@ def load_environment(
 
             return sky()
         case name:
-            return Environment(read_map(Path(name)), name=name)
+            pixels = read_map(Path(name))
+            height, width = pixels.shape[:2]
+            _LOGGER.info("%s: read, %d x %d texels", name, width, height)
+            return Environment(pixels, name=name)
 
 
 def is_map_file(source: object) -> bool:

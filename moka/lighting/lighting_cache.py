@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from moka.commands.descriptors import TextureDescriptor, TextureKind
 from moka.commands.handles import Handle
+from moka.core.log import get_logger
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.brdf_table import TABLE
 from moka.lighting.code_digest import code_digest
@@ -27,6 +28,8 @@ from moka.lighting.environment_lighting import (
 from moka.lighting.environment_maps import CUBE_FORMAT, EnvironmentMaps
 
 __all__ = ["LightingCache"]
+
+_LOGGER = get_logger(__name__)
 
 
 class LightingCache:
@@ -49,6 +52,11 @@ class LightingCache:
         if self._files is None or not _takes_time(request):
             return None
         arrays = self._files.load(self._environment_key(request))
+        _LOGGER.info(
+            "lighting of %s: %s",
+            request.environment.name,
+            "is made" if arrays is None else "is in the cache",
+        )
         return None if arrays is None else self._uploaded(arrays)
 
     def keep(

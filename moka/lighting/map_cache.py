@@ -7,12 +7,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from moka.core.log import get_logger
 from moka.core.rgbe import decode_rgbe, encode_rgbe
 from moka.lighting.code_digest import code_digest
 from moka.lighting.disk_cache import Arrays, DiskCache
 from moka.lighting.environment import Environment, read_map
 
 __all__ = ["load_map"]
+
+_LOGGER = get_logger(__name__)
 
 
 def load_map(
@@ -28,9 +31,12 @@ def load_map(
     key = _key(Path(path))
     arrays = None if key is None else cache.load(key)
     if arrays is not None:
+        _LOGGER.info("%s: its texels are in the cache", name)
         digest = arrays["digest"].tobytes()
         return Environment.known(_unpacked(arrays), digest, name), None
     pixels = read_map(Path(path))
+    height, width = pixels.shape[:2]
+    _LOGGER.info("%s: read, %d x %d texels", name, width, height)
     environment = Environment(pixels, name=name)
     # By which its lighting is found; whoever calls does so beside others.
     digest = environment.digest

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from moka.core.log import get_logger
 from moka.model.cameras import read_cameras
 from moka.model.extensions import check_required, unsupported_extensions
 from moka.model.lights import read_lights
@@ -12,11 +13,14 @@ from moka.model.nodes import NodeTree, read_nodes
 from moka.model.read_materials import read_materials
 from moka.model.read_meshes import read_meshes
 from moka.model.source import GltfSource, ModelSource, open_source
+from moka.model.uri import quote
 
 if TYPE_CHECKING:
     from moka.model.animation import Animation
 
 __all__ = ["load_model"]
+
+_LOGGER = get_logger(__name__)
 
 _VARIANTS = "KHR_materials_variants"
 
@@ -82,7 +86,28 @@ def load_model(source: ModelSource, *, scene: int | str | None = None) -> Model:
         )
         model.default_scene = document.scene
     model.default_scene = model.scene_index(scene)
+    _log(opened, model)
     return model
+
+
+def _log(source: GltfSource, model: Model) -> None:
+    document = source.document
+    _LOGGER.info(
+        "%s: read, %d nodes, %d meshes, %d materials, %d images",
+        source.where,
+        len(document.nodes),
+        len(document.meshes),
+        len(document.materials),
+        len(document.images),
+    )
+    if model.unsupported_extensions:
+        _LOGGER.warning(
+            "%s: is drawn without %s, see moka info",
+            source.where,
+            ", ".join(map(quote, model.unsupported_extensions)),
+        )
+    for name, count in model.omitted.items():
+        _LOGGER.warning("%s: %d %s are left out", source.where, count, name)
 
 
 def _read_scenes(source: GltfSource, nodes: NodeTree) -> list[list[int]]:

@@ -6,11 +6,12 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from moka.commands.descriptors import Filter, MipmapMode
+from moka.core.log import get_logger
 from moka.material.material import Texture
 
 __all__ = ["TextureSettings", "levels_beyond"]
 
-_LOGGER = logging.getLogger(__name__)
+_LOGGER = get_logger(__name__)
 
 
 class TextureSettings(Struct, frozen=True):

@@ -18,6 +18,7 @@ from moka.commands.descriptors import TextureDescriptor
 from moka.commands.handles import Handle
 from moka.core.encoded_image import EncodedImage
 from moka.core.image_header import image_media_type
+from moka.core.log import get_logger
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.renderer.sampled_levels import SampledLevels
@@ -30,6 +31,8 @@ from moka.renderer.texture_request import TextureRequest
 from moka.renderer.texture_settings import levels_beyond
 
 __all__ = ["TexturePool"]
+
+_LOGGER = get_logger(__name__)
 
 
 class TexturePool:
@@ -147,6 +150,12 @@ class TexturePool:
             return finest
         seen = read.finest(*size)
         self._statistics.count("textures_reduced", int(seen > finest))
+        if seen > finest:
+            _LOGGER.debug(
+                "%s: %d levels are finer than the picture can show",
+                where,
+                seen,
+            )
         return max(finest, seen)
 
 

@@ -1,7 +1,6 @@
 """What the viewer remembers from one time to the next, in a JSON file."""
 
 import contextlib
-import logging
 import os
 import sys
 from pathlib import Path
@@ -11,6 +10,7 @@ import msgspec
 from msgspec import Struct
 
 from moka.core.atomic_file import atomic_file
+from moka.core.log import get_logger
 
 __all__ = [
     "MOST_RECENT",
@@ -21,7 +21,7 @@ __all__ = [
     "with_recent",
 ]
 
-_LOGGER = logging.getLogger(__name__)
+_LOGGER = get_logger(__name__)
 
 #: How many files a list of recent ones holds.
 MOST_RECENT = 10

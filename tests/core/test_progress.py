@@ -27,3 +27,10 @@ def test_a_file_sees_nothing() -> None:
         progress.step()
     assert file.getvalue() == ""
     assert progress.done == 2
+
+
+def test_a_hidden_one_is_silent_on_a_terminal() -> None:
+    stream = Terminal()
+    with Progress("frame", 3, stream, is_shown=False) as progress:
+        progress.step()
+    assert stream.getvalue() == ""

@@ -1,5 +1,6 @@
 """Which contexts to try, in which order, and what to say if none works."""
 
+import logging
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -9,8 +10,11 @@ from msgspec import Struct
 from moka.backend.contexts.context import GraphicsContext
 from moka.backend.contexts.native import NativeContext
 from moka.core.errors import ContextError, OptionError
+from moka.core.log import get_logger
 
 __all__ = ["BACKENDS", "Candidate", "candidates", "open_context"]
+
+_LOGGER = get_logger(__name__)
 
 BACKENDS = ("auto", "egl", "osmesa", "window")
 
@@ -96,9 +100,19 @@ def open_context(
     causes = []
     for candidate in candidates(backend, device):
         try:
-            return candidate.open(debug=debug)
+            context = candidate.open(debug=debug)
         except ContextError as error:
-            causes.append(f"{candidate.label}: {error} ({candidate.hint})")
+            cause = f"{candidate.label}: {error} ({candidate.hint})"
+            _LOGGER.info("no context: %s", cause)
+            causes.append(cause)
+            continue
+        if _LOGGER.isEnabledFor(logging.INFO):
+            facts = context.describe()
+            _LOGGER.info(
+                "%s: %s, OpenGL %s",
+                *(facts[name] for name in ("context", "renderer", "version")),
+            )
+        return context
     raise ContextError("no OpenGL 3.3 context: " + "; ".join(causes))
 
 
