@@ -64,8 +64,8 @@ def commands(path: Path) -> Iterator[list[str]]:
         lines += re.findall(r"^    (moka .*)$", path.read_text(), re.M)
     for line in lines:
         words = shlex.split(line, comments=True)
-        if "|" in words:
-            words = words[: words.index("|")]
+        for mark in {"|", ">"} & set(words):
+            words = words[: words.index(mark)]
         if words[:1] == ["moka"]:
             yield words[1:]
 

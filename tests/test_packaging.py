@@ -138,7 +138,8 @@ def test_a_headless_install_asks_for_no_window(metadata: Message) -> None:
     for name in ("glfw", "moderngl-window", "imgui", "pyglet", "pygame"):
         assert not any(line.startswith(name) for line in always)
     assert set(metadata.get_all("Provides-Extra") or []) == {
-        "bench", "compressed", "dev", "docs", "notebook", "video", "window",
+        "bench", "completion", "compressed", "dev", "docs", "notebook",
+        "video", "window",
     }  # fmt: skip
 
 

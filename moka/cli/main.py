@@ -14,7 +14,7 @@ from moka.cli.process import INTERRUPTED, run_process
 from moka.core.errors import MokaError, OptionError
 from moka.version import __version__
 
-__all__ = ["main"]
+__all__ = ["full_parser", "main"]
 
 # Where the clock of a run starts: before anything heavy is imported.
 STARTED = time.perf_counter()
@@ -29,6 +29,8 @@ _COMMANDS = {
     "survey": "Make a blind survey of pictures, and analyse its answers.",
     "bench": "Measure moka: errors against truth, times, work done.",
     "cache": "Say what the cache of preintegrated lighting holds, or clear it.",
+    "completion": "Print a script that completes commands, options and files "
+    "in a shell.",
     "doctor": "Say which OpenGL contexts work here and what is missing.",
 }
 
@@ -105,6 +107,11 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
             module.add_arguments(command)
             command.set_defaults(execute=module.execute)
     return parser
+
+
+def full_parser() -> argparse.ArgumentParser:
+    """The parser with the options of every command."""
+    return _parser(tuple(_COMMANDS))
 
 
 def _fail(message: str, code: int, *, debug: bool) -> int:

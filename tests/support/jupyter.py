@@ -47,7 +47,6 @@ def serve_notebooks(folder: Path) -> Iterator[str]:
                 *("--ServerApp.ip=127.0.0.1", f"--ServerApp.port={port}"),
                 *("--ServerApp.port_retries=0", "--IdentityProvider.token="),
                 "--LabApp.expose_app_in_browser=True",
-                "--LabApp.news_url=None",
                 "--LabApp.check_for_updates_class="
                 "jupyterlab.NeverCheckForUpdate",
             ],
