@@ -188,16 +188,14 @@ def _loop(app: App, window: "Window", frames: int | None) -> None:
     is_wanted = True
     number = 0
     while not (window.should_close or app.quits):
+        # Before the wait: whoever asked while the last frame was handed over
+        # has woken the window already.
+        is_wanted |= _wants_frame(app)
         wait = max(due - time.perf_counter(), 0.0) if is_wanted else _NAP
         for event in window.poll(_NAP if window.is_hidden else wait):
             _dispatch(app, event)
             is_wanted = True
-        is_wanted |= (
-            app.take_redraw_request()
-            or app.continuous
-            or (app.scene.is_animating and not app.paused)
-            or not app.renderer.is_complete
-        )
+        is_wanted |= _wants_frame(app)
         now = time.perf_counter()
         if window.is_hidden or not is_wanted or now < due:
             continue
@@ -216,6 +214,16 @@ def _loop(app: App, window: "Window", frames: int | None) -> None:
         number += 1
         if number == frames:
             break
+
+
+def _wants_frame(app: App) -> bool:
+    """Whether another frame would show something else, or was asked for."""
+    return (
+        app.take_redraw_request()
+        or app.continuous
+        or (app.scene.is_animating and not app.paused)
+        or not app.renderer.is_complete
+    )
 
 
 @contextlib.contextmanager

@@ -15,6 +15,7 @@ import pytest
 from PIL import ImageGrab
 
 from moka.app import window as window_module
+from moka.app.application import App, GameTime
 from moka.app.events import (
     CloseEvent,
     Event,
@@ -27,8 +28,10 @@ from moka.app.events import (
     TextEvent,
 )
 from moka.app.keys import Key, Modifiers, MouseButton
+from moka.app.run import run
 from moka.app.window import Window
 from moka.backend.contexts import WindowContext
+from moka.commands.command_list import CommandList
 from moka.core.errors import ContextError
 from tests.support.display import running_display
 
@@ -325,3 +328,25 @@ def test_a_captured_pointer_is_given_back(window: Window) -> None:
     assert window.content_scale >= 1.0
     assert not window.is_hidden
     assert isinstance(window.gamepads, list)
+
+
+@pytest.mark.gpu
+@pytest.mark.parametrize("continuous", [True, False])
+def test_frames_follow_one_another_without_any_event(
+    display: str,  # noqa: ARG001
+    continuous: bool,
+) -> None:
+    """Also where a frame is asked for while the one before is handed over."""
+
+    class Busy(App):
+        def draw(self, time: GameTime, commands: CommandList) -> None:  # noqa: ARG002
+            commands.bind_framebuffer(None)
+            commands.clear((0.0, 0.0, 0.0, 1.0))
+            if not self.continuous:
+                self.request_redraw()
+
+    Busy.continuous = continuous
+    start = time.perf_counter()
+    run(Busy, frames=40, size=(64, 64), vsync=False, cache=False)
+    # A wait for events that do not come is of half a second.
+    assert time.perf_counter() - start < 10.0
