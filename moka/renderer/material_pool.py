@@ -1,7 +1,10 @@
 """The materials that are described, and the images that decode for them."""
 
+from collections.abc import Callable, Sequence
+
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
+from moka.model.mesh import Primitive
 from moka.renderer.sampled_levels import StillPicture
 from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.texture_settings import TextureSettings
@@ -46,6 +49,29 @@ class MaterialPool:
         """
         self._still = StillPicture(scene, still, size) if still else None
         self._describe(scene, settings)
+
+    def preload(
+        self,
+        primitives: Sequence[Primitive],
+        settings: TextureSettings,
+        told: Callable[[int, int], None],
+    ) -> None:
+        """Have all that ``primitives`` sample decoded, and wait for it.
+
+        On a thread that may wait; a scene that has them then is drawn
+        without. ``told`` gets how many textures are done, and of how many;
+        what it raises ends the waiting. Raises ImageFileError for an image
+        that cannot be had.
+        """
+        materials = SceneMaterials(primitives, self.textures, None, settings)
+        requests = {
+            request: None
+            for bound in materials.requests
+            for request in bound.values()
+        }
+        for done, request in enumerate(requests):
+            told(done, len(requests))
+            self.textures.handle(request)
 
     def describe(
         self,

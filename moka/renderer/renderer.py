@@ -14,7 +14,7 @@ cull, key, gather (:mod:`moka.renderer.gather`).
 """
 
 import math
-from collections.abc import Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +54,7 @@ from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
 
 if TYPE_CHECKING:
+    from moka.model.mesh import Primitive
     from moka.renderer.debug_view import DebugPass
     from moka.renderer.pose_texture import PoseTexture
     from moka.renderer.surface_values import SurfaceValues, ValueTargets
@@ -186,6 +187,17 @@ class Renderer:
         Waits for the GPU and the disk: call it when nobody else waits.
         """
         self._sources.keep()
+
+    def preload(
+        self,
+        primitives: "Sequence[Primitive]",
+        told: Callable[[int, int], None],
+    ) -> None:
+        """Decode what ``primitives`` sample before they are drawn.
+
+        On a thread that may wait; see MaterialPool.preload.
+        """
+        self._materials.preload(primitives, self.settings.textures, told)
 
     def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
         """Record a frame of ``scene`` seen by ``camera`` into ``commands``.

@@ -47,6 +47,7 @@ class TexturePool:
             thread_name_prefix="moka-decode",
         )
         self._pending: dict[TextureRequest, Future[Handle]] = {}
+        self._lock = threading.Lock()
 
     def begin(
         self,
@@ -58,6 +59,14 @@ class TexturePool:
         ``wanted`` has the images that each request names. ``levels`` tells
         which will be read; any may be of what is not there.
         """
+        with self._lock:
+            self._begin(wanted, levels or {})
+
+    def _begin(
+        self,
+        wanted: Mapping[TextureRequest, Sequence[EncodedImage]],
+        levels: Mapping[TextureRequest, SampledLevels],
+    ) -> None:
         decoders = {
             image.identity: _Decoder(image)
             for request, images in wanted.items()
@@ -76,7 +85,7 @@ class TexturePool:
                 decoder.uses += 1
         for request, needed in jobs:
             self._pending[request] = self._workers.submit(
-                self._make, request, needed, (levels or {}).get(request)
+                self._make, request, needed, levels.get(request)
             )
 
     def handle(self, request: TextureRequest) -> Handle:

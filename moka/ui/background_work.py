@@ -1,7 +1,7 @@
 """Work that a window does not wait for: reading files, writing pictures."""
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from typing import Any, TypeVar
 
 __all__ = ["BackgroundWork"]
@@ -10,16 +10,19 @@ Result = TypeVar("Result")
 
 
 class BackgroundWork:
-    """Jobs on a thread of their own, one after the other.
+    """Jobs on two threads of their own, begun one after the other.
 
-    What a job returns is handed over on the thread that calls :meth:`poll`.
-    ``wake`` is called, from any thread, when there is something to poll for.
+    What a job returns is handed over on the thread that calls :meth:`poll`,
+    in the order in which the jobs were begun. ``wake`` is called, from any
+    thread, when there is something to poll for or to show.
     """
 
     def __init__(self, wake: Callable[[], None]) -> None:
         self._wake = wake
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="moka-background")
+        self._pool = ThreadPoolExecutor(2, thread_name_prefix="moka-background")
         self._jobs: list[tuple[str, Future[Any], Callable[[Any], None]]] = []
+        self._detail = ""
+        self._closed = False
 
     def start(
         self,
@@ -35,15 +38,29 @@ class BackgroundWork:
     @property
     def doing(self) -> str | None:
         """What is being done, for a person; None if nothing is."""
-        return self._jobs[0][0] if self._jobs else None
+        if not self._jobs:
+            return None
+        return self._detail or self._jobs[0][0]
+
+    def tell(self, detail: str) -> None:
+        """Say what a job is about; for the job itself, on its thread.
+
+        Raises CancelledError when nobody waits for the job any more.
+        """
+        if self._closed:
+            raise CancelledError
+        self._detail = detail
+        self._wake()
 
     def poll(self) -> None:
         """Hand over what is done; raises what a job raised."""
         while self._jobs and self._jobs[0][1].done():
             _, future, then = self._jobs.pop(0)
+            self._detail = ""
             then(future.result())
 
     def close(self) -> None:
         """Forget what has not begun, and wait for what has."""
+        self._closed = True
         self._pool.shutdown(wait=True, cancel_futures=True)
         self._jobs.clear()

@@ -45,6 +45,7 @@ from moka.scene.camera_choice import (
     look_text,
     parse_camera,
 )
+from moka.scene.drawables import ModelLayout
 from moka.scene.lights import Light
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
@@ -311,15 +312,33 @@ class Viewer(App):
 
         ``keep_view`` leaves the camera where it is.
         """
-        path = asset_folder() / "demo.glb" if source is None else source
-        read = partial(load_model, path)
-        if isinstance(source, Model):
-            read = partial(_identity, source)
         self._work.start(
-            f"reading {_name(path)}",
-            read,
+            f"reading {_name(source)}",
+            partial(self._read_model, source),
             partial(self._show_model, source, keep_view=keep_view),
         )
+
+    def _read_model(self, source: Any) -> tuple[Model, ModelLayout]:
+        """A model whose images are decoded; in the background."""
+        model = source
+        if not isinstance(source, Model):
+            path = asset_folder() / "demo.glb" if source is None else source
+            model = load_model(path)
+        # The scene finds the layout again as long as somebody holds it.
+        begun = self.begun if self.model is None else RenderRequest()
+        layout = self.scene.layout_of(
+            model,
+            model.scene_index(begun.scene),
+            model.variant_index(begun.variant),
+        )
+
+        def told(done: int, total: int) -> None:
+            self._work.tell(
+                f"decoding images of {_name(source)}: {done} of {total}"
+            )
+
+        self.renderer.preload(layout.primitives, told)
+        return model, layout
 
     def open_environment(self, source: Any) -> None:
         """Read an environment in the background, and light with it."""
@@ -535,8 +554,9 @@ class Viewer(App):
     # What the background has done.
 
     def _show_model(
-        self, source: Any, model: Model, *, keep_view: bool
+        self, source: Any, read: tuple[Model, ModelLayout], *, keep_view: bool
     ) -> None:
+        model, _ = read
         is_first = self.model is None
         self._remove_model()
         begun = self.begun

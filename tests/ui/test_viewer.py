@@ -1,8 +1,10 @@
 """The viewer in a real window, with a person at mouse and keyboard."""
 
+import io
 import math
 import shlex
 import shutil
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,9 +19,11 @@ from moka.app.events import DropEvent
 from moka.app.render_session import RenderRequest
 from moka.cli.main import main
 from moka.core import resources
+from moka.core.decode import decode_image
+from moka.core.encoded_image import EncodedImage
 from moka.core.radiance_hdr import write_radiance_hdr
 from moka.graphics.shader_source import forget_shaders
-from moka.material.material import Material
+from moka.material.material import Material, Texture
 from moka.model import cube, model_of, save_model
 from moka.model.cameras import Perspective
 from moka.ui.viewer import Viewer
@@ -434,3 +438,49 @@ def test_what_was_chosen_is_remembered(
     assert seen[-1].settings.tone_map == "agx"
     assert main(["view", "--no-preferences", "--size", "64x64"]) == 0
     assert seen[-1].settings.tone_map == "neutral"
+
+
+def test_the_window_answers_while_images_are_decoded(
+    watch: Watch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And what cannot be decoded is told, and changes nothing."""
+    slow, broken = tmp_path / "slow.glb", tmp_path / "broken.glb"
+    encoded = io.BytesIO()
+    PillowImage.new("RGB", (4, 4), (10, 200, 30)).save(encoded, "PNG")
+    for path, data in (
+        (slow, encoded.getvalue()),
+        (broken, encoded.getvalue()[:40]),
+    ):
+        image = EncodedImage("picture", data=data)
+        material = Material(
+            base_colour_texture=Texture(image), metallic_factor=0.0
+        )
+        save_model(model_of([(cube(1.0), material, np.eye(4))]), path)
+    begun, go_on = threading.Event(), threading.Event()
+
+    def decode_slowly(image: EncodedImage) -> Any:
+        begun.set()
+        assert go_on.wait(30)
+        return decode_image(image)
+
+    monkeypatch.setattr("moka.core.decode.decode_image", decode_slowly)
+
+    def story(person: Person, viewer: Viewer) -> None:
+        before = viewer.model
+        viewer.open_model(slow)
+        person.wait("decoding", begun.is_set)
+        assert viewer.model is before
+        assert viewer._work.doing == "decoding images of slow.glb: 0 of 1"
+        frame, distance = viewer.frame, viewer.controls.distance
+        person.act("mousemove 80 150 click 4")
+        person.wait("a zoom", lambda: viewer.controls.distance < distance)
+        person.wait("a frame", lambda: viewer.frame is not frame)
+        assert viewer.model is before
+        go_on.set()
+        person.wait("the model", lambda: viewer.model is not before)
+        shown = viewer.model
+        viewer.open_model(broken)
+        person.wait("an error", lambda: viewer.error is not None)
+        assert viewer.model is shown
+
+    watch(story)
