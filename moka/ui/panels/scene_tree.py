@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from moka.ui.panels.panel import Panel
+from moka.ui.tree_rows import TreeRows
 
 if TYPE_CHECKING:
     from moka.model import Model
@@ -12,8 +13,11 @@ if TYPE_CHECKING:
 
 __all__ = ["SceneTreePanel"]
 
-# More children than this are drawn where they are looked at only.
-_MANY = 200
+# Rows of text that the tree takes at most.
+_HEIGHT = 16
+
+# How far deep nodes still move to the right.
+_DEEPEST = 10
 
 
 class SceneTreePanel(Panel):
@@ -23,92 +27,95 @@ class SceneTreePanel(Panel):
 
     def __init__(self) -> None:
         self._model: Model | None = None
-        self._children: list[list[int]] = []
-        self._roots: list[int] = []
+        self._rows = TreeRows([], [])
         self._revealed: int | None = None
-        self._open: set[int] = set()
 
     def is_useful(self, viewer: "Viewer") -> bool:
         """Whether there are nodes."""
         return viewer.model is not None and len(viewer.model.model.nodes) > 0
 
     def draw(self, imgui: Any, viewer: "Viewer") -> None:
-        """The tree, or of it what is open."""
+        """The search, and of the tree what fits."""
         assert viewer.model is not None
         self._follow(viewer.model.model)
-        self._reveal(viewer.selection)
-        height = (
-            min(len(self._children), 14) * imgui.get_text_line_height() * 1.5
+        imgui.set_next_item_width(-1)
+        _, self._rows.search = imgui.input_text_with_hint(
+            "##search", "search", self._rows.search
         )
+        line = imgui.get_frame_height_with_spacing()
+        is_new = self._reveal(viewer.selection)
+        rows = self._rows.seen
+        height = min(max(len(rows), 1), _HEIGHT) * line
         if imgui.begin_child("nodes", (0, height)):
-            self._draw_rows(imgui, viewer, self._roots)
+            if is_new and viewer.selection in rows:
+                place = rows.index(viewer.selection)
+                imgui.set_scroll_y(max((place + 0.5) * line - height / 2, 0.0))
+            clipper = imgui.ListClipper()
+            clipper.begin(len(rows), line)
+            while clipper.step():
+                for at in range(clipper.display_start, clipper.display_end):
+                    self._draw_row(imgui, viewer, rows[at])
         imgui.end_child()
+        imgui.text_disabled(f"{len(rows):,} of {len(self._rows):,} nodes")
 
     def _follow(self, model: "Model") -> None:
-        """Know the children of every node of the model that is open."""
+        """Know the nodes of the model that is open."""
         if self._model is model:
             return
         self._model = model
-        self._open.clear()
         self._revealed = None
-        self._children = [[] for _ in range(len(model.nodes))]
-        self._roots = []
-        for row, parent in enumerate(model.nodes.parents.tolist()):
-            siblings = self._roots if parent < 0 else self._children[parent]
-            siblings.append(row)
+        nodes = model.nodes
+        names = [
+            name or f"node {number}"
+            for name, number in zip(
+                nodes.names, np.asarray(nodes.source).tolist(), strict=True
+            )
+        ]
+        self._names = names
+        self._rows = TreeRows(nodes.parents, names)
+        if len(names) <= _HEIGHT:
+            for row in range(len(names)):
+                self._rows.reveal(row)
 
-    def _reveal(self, selection: int | None) -> None:
+    def _reveal(self, selection: int | None) -> bool:
         """Open what is above a node that was selected elsewhere."""
-        if selection == self._revealed or self._model is None:
-            return
+        if selection == self._revealed:
+            return False
         self._revealed = selection
-        row = selection
-        while row is not None:
-            parent = int(self._model.nodes.parents[row])
-            row = parent if parent >= 0 else None
-            if row is not None:
-                self._open.add(row)
-
-    def _draw_rows(self, imgui: Any, viewer: "Viewer", rows: list[int]) -> None:
-        if len(rows) <= _MANY or any(self._children[row] for row in rows):
-            for row in rows:
-                self._draw_row(imgui, viewer, row)
-            return
-        clipper = imgui.ListClipper()
-        clipper.begin(len(rows))
-        while clipper.step():
-            for at in range(clipper.display_start, clipper.display_end):
-                self._draw_row(imgui, viewer, rows[at])
+        if selection is not None:
+            self._rows.reveal(selection)
+        return selection is not None
 
     def _draw_row(self, imgui: Any, viewer: "Viewer", row: int) -> None:
-        assert self._model is not None
         assert viewer.model is not None
-        children = self._children[row]
+        rows = self._rows
         node = viewer.model.node(row)
         imgui.push_id(row)
         changed, visible = imgui.checkbox("##visible", node.visible)
         if changed:
             node.visible = visible
             viewer.request_redraw()
-        imgui.same_line()
+        depth = 0 if rows.search else min(int(rows.depth[row]), _DEEPEST)
+        imgui.same_line(
+            imgui.get_cursor_start_pos().x
+            + imgui.get_frame_height()
+            + 0.6 * imgui.get_font_size() * (depth + 1)
+        )
         flags = imgui.TreeNodeFlags_
-        wanted = flags.open_on_arrow | flags.span_avail_width
-        if not children:
+        wanted = (
+            flags.open_on_arrow
+            | flags.span_avail_width
+            | flags.no_tree_push_on_open
+        )
+        if rows.search or not rows.has_children(row):
             wanted |= flags.leaf
         if viewer.selection == row:
             wanted |= flags.selected
-        imgui.set_next_item_open(row in self._open)
-        name = self._model.nodes.names[row] or f"node {self._number(row)}"
-        is_open = imgui.tree_node_ex(name, wanted)
+        imgui.set_next_item_open(rows.is_open(row))
+        imgui.tree_node_ex(self._names[row], wanted)
         if imgui.is_item_toggled_open():
-            self._open ^= {row}
+            rows.toggle(row)
         elif imgui.is_item_clicked():
             viewer.selection = self._revealed = row
-        if is_open:
-            self._draw_rows(imgui, viewer, children)
-            imgui.tree_pop()
+            viewer.request_redraw()
         imgui.pop_id()
-
-    def _number(self, row: int) -> int:
-        assert self._model is not None
-        return int(np.asarray(self._model.nodes.source)[row])
