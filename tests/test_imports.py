@@ -13,6 +13,7 @@ import pytest
 
 WINDOW = {"glfw", "imgui_bundle", "moderngl_window", "pyglet"}
 TOOLS = {"matplotlib", "pytest", "scipy"}
+NOTEBOOK = {"IPython", "anywidget", "ipywidgets", "jupyter_rfb", "traitlets"}
 WRITER = {"dataclasses_json", "pygltflib"}
 
 
@@ -49,7 +50,7 @@ def test_import_moka_loads_no_other_package() -> None:
     log = import_log("-c", "import moka")
     assert "moka" in imported(log)
     heavy = {"numpy", "moderngl", "PIL", "OpenEXR", "pyglm", "msgspec"}
-    assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER)
+    assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER | NOTEBOOK)
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["render", "--help"]])
@@ -57,7 +58,7 @@ def test_help_does_not_load_numpy(arguments: list[str]) -> None:
     log = import_log("-m", "moka", *arguments)
     assert "moka" in imported(log)
     heavy = {"numpy", "moderngl", "PIL", "OpenEXR", "pyglm", "msgspec"}
-    assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER)
+    assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER | NOTEBOOK)
 
 
 @pytest.mark.gpu
@@ -67,7 +68,7 @@ def test_a_headless_png_pays_for_nothing_else(tmp_path: Path) -> None:
     assert out.exists()
     loaded = imported(log)
     assert {"numpy", "moderngl", "PIL"} <= loaded
-    assert not loaded & (WINDOW | TOOLS | WRITER | {"OpenEXR"})
+    assert not loaded & (WINDOW | TOOLS | WRITER | NOTEBOOK | {"OpenEXR"})
     # Nor for what the file does not have.
     modules = {
         "moka.core.alpha_levels",

@@ -4,6 +4,7 @@ import ctypes
 import gc
 import threading
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import moderngl
@@ -12,6 +13,8 @@ import pytest
 from numpy.typing import NDArray
 
 from moka.backend.contexts import open_context
+from moka.backend.gl_functions import Functions
+from moka.backend.host_state import HostState
 from moka.commands.command_list import CommandList
 from moka.core.errors import ContextError, DeviceError, ShaderError
 from moka.graphics.device import GraphicsDevice
@@ -20,6 +23,7 @@ from moka.model import demo_model
 from moka.renderer.renderer import Renderer
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
+from tests.support.display import running_display
 
 pytestmark = pytest.mark.gpu
 
@@ -279,6 +283,61 @@ def test_all_state_is_left_as_it_was_and_none_shows(host: Host) -> None:
     assert host.state() == before
     np.testing.assert_array_equal(host.draw(), drawn)
     assert host.gl.error == "GL_NO_ERROR"
+
+
+def test_state_is_kept_without_what_later_versions_have(host: Host) -> None:
+    """By the functions of OpenGL 3.3, which set all attachments as one."""
+    old = SimpleNamespace(version_code=330, extensions=frozenset[str]())
+    state = HostState(Functions(host.owner.function), old)
+    host.target.use()
+    host.set_odd_state()
+    # No function of 3.3 could have set this.
+    host.call("glClipControl", 0x8CA1, 0x935E)
+    before = host.state()
+    with state.kept(blocks=8, units=8) as framebuffer:
+        assert framebuffer == host.target.glo
+        host.gl.disable(moderngl.BLEND | moderngl.CULL_FACE)
+        host.gl.blend_func = moderngl.DST_COLOR, moderngl.ONE
+        host.call("glUseProgram", 0)
+        host.call("glBindVertexArray", 0)
+        for unit in range(8):
+            host.call("glActiveTexture", 0x84C0 + unit)
+            host.call("glBindTexture", 0x0DE1, 0)
+            host.call("glBindSampler", unit, 0)
+            host.tint.bind_to_uniform_block(unit, offset=0)
+        host.other.use()
+        host.other.clear()
+        assert host.state() != before
+    assert host.state() == before
+
+
+@pytest.mark.window
+def test_a_window_of_the_host_is_drawn_into() -> None:
+    glfw = pytest.importorskip("glfw", reason="glfw is not installed")
+    with running_display():
+        if not glfw.init():
+            pytest.skip("GLFW finds no display")
+        glfw.default_window_hints()
+        glfw.window_hint(glfw.VISIBLE, False)
+        glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, 3)
+        glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, 3)
+        glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+        window = glfw.create_window(*SIZE, "host", None, None)
+        glfw.make_context_current(window)
+        # As a program has it that did not make its context by ModernGL.
+        moderngl.init_context()
+        gl = moderngl.get_context()
+        gl.screen.use()
+        with GraphicsDevice.embed(gl) as device:
+            draw_scene(device)
+        assert gl.error == "GL_NO_ERROR"
+        pixels = np.frombuffer(gl.screen.read(components=3), np.uint8)
+        gl.release()
+        glfw.make_context_current(None)
+        glfw.destroy_window(window)
+        glfw.terminate()
+    shown = pixels.reshape(SIZE[1], SIZE[0], 3).astype(int)
+    assert np.abs(shown - own_picture()[..., :3]).max() <= 1
 
 
 def test_frames_go_where_the_host_draws_at_that_moment(host: Host) -> None:

@@ -1,6 +1,8 @@
 """The viewer of notebooks, driven by the events of its page, without one."""
 
 import asyncio
+import importlib
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -173,6 +175,19 @@ def test_closing_ends_the_render_thread(viewer: Viewer) -> None:
     send(viewer, "wheel", x=0, y=0, dx=0, dy=100)
     with pytest.raises(DeviceError, match="closed"):
         viewer.get_frame()
+
+
+def test_without_jupyter_one_line_says_what_to_do(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    import moka.notebook.viewer as module
+
+    monkeypatch.setitem(sys.modules, "jupyter_rfb", None)
+    monkeypatch.delitem(sys.modules, module.__name__)
+    with pytest.raises(
+        OptionError, match=r"pip install 'moka-pbr\[notebook\]'"
+    ):
+        importlib.import_module(module.__name__)
 
 
 def test_errors_are_those_of_render() -> None:
