@@ -59,9 +59,16 @@ class Case(Struct, frozen=True):
     # Those of the file alone, such as which of its variants is meant.
     choice: dict[str, Any] = field(default_factory=dict)
 
+    def glb(self) -> bytes:
+        """The bytes of the file."""
+        file = self.file()
+        return (
+            file if isinstance(file, bytes) else b"".join(file.save_to_bytes())
+        )
+
     def run(self) -> Outcome:
         """Render, and compare."""
-        picture = self._render(self.file(), **self.choice)
+        picture = self._render(self.glb(), **self.choice)
         if self.painted is not None:
             expected = np.broadcast_to(
                 self.painted(*plane()), picture.shape

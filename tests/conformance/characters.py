@@ -96,6 +96,7 @@ def eight_joints() -> bytes:
     file = SceneFile()
     places = np.linspace(-0.9, 0.9, 8)
     joints = [file.node(None, (x, x / 2)) for x in places]
+    file.node(None, children=joints)
     weights = _WEIGHTS.reshape(2, 4)
     influences = [
         (

@@ -179,7 +179,7 @@ def sparse() -> bytes:
     for place, colour in zip(_PLACES, _COLOURS, strict=True):
         positions = file.accessor(np.zeros((4, 3)), limits=True)
         accessor = file.gltf.accessors[positions]
-        accessor.bufferView = None
+        accessor.bufferView = accessor.byteOffset = None
         accessor.min = _SQUARE.min(axis=0).tolist()
         accessor.max = _SQUARE.max(axis=0).tolist()
         accessor.sparse = {

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from moka.model.validation.issues import Severity
+from moka.model.validation.validate import validate
 from tests.conformance.case import Case
 from tests.conformance.features import FEATURES
 from tests.conformance.samples import SAMPLES, Sample
@@ -44,6 +46,18 @@ def test_every_sample_is_there(assets: Path) -> None:
     assert sorted(sample.path for sample in SAMPLES) == sorted(
         str(path.relative_to(models)) for path in models.rglob("*.gl[bt]*")
     )
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.title)
+def test_the_file_of_a_feature_is_valid(case: Case, tmp_path: Path) -> None:
+    path = tmp_path / "case.glb"
+    path.write_bytes(case.glb())
+    errors = [
+        issue
+        for issue in validate(path).issues
+        if issue.severity is Severity.ERROR
+    ]
+    assert not errors
 
 
 def test_titles_are_told_apart() -> None:

@@ -169,6 +169,10 @@ def _file(
         ),
         material=0,
     )
+    positions = gltf.accessors[primitive.attributes.POSITION]
+    places = attributes["POSITION"].astype("<f4")
+    positions.min = places.min(axis=0).tolist()
+    positions.max = places.max(axis=0).tolist()
     gltf.meshes = [pygltflib.Mesh(primitives=[primitive])]
     if normal_map is not None:
         gltf.images = [

@@ -28,6 +28,12 @@ def check_accessors(file: CheckedFile) -> None:
         place: Place = ("accessors", number)
         layout = file.format_of(number)
         count = number_of(accessor.get("count"))
+        if "byteOffset" in accessor and "bufferView" not in accessor:
+            file.add(
+                "UNSATISFIED_DEPENDENCY",
+                (*place, "byteOffset"),
+                "an offset needs a buffer view",
+            )
         if layout is None:
             continue
         kind, component, normalised = layout

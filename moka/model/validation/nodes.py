@@ -17,6 +17,13 @@ __all__ = ["check_nodes"]
 # Of a quaternion's length, as the Khronos validator has it.
 _UNIT_ERROR = 0.00769
 _TRS = ("translation", "rotation", "scale")
+#: Transforms that change nothing.
+_IDENTITIES = {
+    "translation": (0, 0, 0),
+    "rotation": (0, 0, 0, 1),
+    "scale": (1, 1, 1),
+    "matrix": np.eye(4).reshape(-1),
+}
 
 
 def check_nodes(file: CheckedFile) -> list[int]:
@@ -33,6 +40,16 @@ def check_nodes(file: CheckedFile) -> list[int]:
                 "NODE_SKINNED_MESH_NON_ROOT",
                 place,
                 "its parents do not move a skinned mesh",
+            )
+        if (
+            _is_moved(node)
+            and file.get("skins", node.get("skin")) is not None
+            and file.get("meshes", node.get("mesh")) is not None
+        ):
+            file.add(
+                "NODE_SKINNED_MESH_LOCAL_TRANSFORMS",
+                place,
+                "its own transform does not move a skinned mesh",
             )
     for number, scene in file.all("scenes"):
         for index, root in enumerate(list_of(scene, "nodes")):
@@ -102,6 +119,15 @@ def _is_decomposable(matrix: Any) -> bool:
             return False
         unit = columns / length
         return bool(np.abs(unit.T @ unit - np.eye(3)).max() < 5e-3)
+
+
+def _is_moved(node: dict[str, Any]) -> bool:
+    """Whether a transform of the node's own is not the identity."""
+    for name, identity in _IDENTITIES.items():
+        given = _numbers(node.get(name), len(identity))
+        if given is not None and not np.array_equal(given, identity):
+            return True
+    return False
 
 
 def _check_mesh(file: CheckedFile, node: dict[str, Any], place: Place) -> None:

@@ -135,6 +135,7 @@ _FAULTS: dict[str, tuple[str, ...]] = {
     "NODE_MATRIX_NON_TRS": ("matrix that is not a transform",),
     "NODE_MATRIX_TRS": ("matrix and rotation",),
     "NODE_PARENT_OVERRIDE": ("node with two parents",),
+    "NODE_SKINNED_MESH_LOCAL_TRANSFORMS": ("skinned mesh that its node moves",),
     "NODE_SKINNED_MESH_WITHOUT_SKIN": ("mesh with joints without a skin",),
     "NODE_SKIN_WITH_NON_SKINNED_MESH": ("skin of a mesh without joints",),
     "NODE_WEIGHTS_INVALID": ("weights of a node of another number",),
@@ -178,7 +179,7 @@ _FAULTS: dict[str, tuple[str, ...]] = {
         "sampler of an animation out of range",
         "light out of range",
     ),
-    "UNSATISFIED_DEPENDENCY": ("image without a type",),
+    "UNSATISFIED_DEPENDENCY": ("image without a type", "offset into no view"),
     "UNUSED_EXTENSION_REQUIRED": ("required extension that is not used",),
     "VALUE_MULTIPLE_OF": ("stride of an odd size",),
     "VALUE_NOT_IN_LIST": (

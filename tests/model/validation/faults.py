@@ -354,6 +354,9 @@ FAULTS: dict[str, Fault] = {
     "buffer beyond its data": _set("buffers.0.byteLength", 100_000),
     "accessor beyond its view": _set("accessors.0.count", 5),
     "offset not aligned": _set("accessors.5.byteOffset", 1),
+    "offset into no view": _all(
+        _drop("accessors.2.bufferView"), _set("accessors.2.byteOffset", 0)
+    ),
     "view not aligned": _set("bufferViews.5.byteOffset", 1),
     "stride below an element": _set("bufferViews.0.byteStride", 8),
     "stride beyond 252": _set("bufferViews.0.byteStride", 256),
@@ -421,6 +424,7 @@ FAULTS: dict[str, Fault] = {
     "skin of a mesh without joints": _set("nodes.5.skin", 0),
     "joints without weights": _drop(f"{_FIRST}.attributes.WEIGHTS_0"),
     "mesh with joints without a skin": _drop("nodes.0.skin"),
+    "skinned mesh that its node moves": _set("nodes.0.scale", [2, 1, 1]),
     "joints without a common root": _set("skins.0.joints", [2, 5]),
     # Nodes.
     "node below itself": _set("nodes.4.children", [2]),
