@@ -39,18 +39,22 @@ class CallingThread:
         self._posted: queue.SimpleQueue[Callable[[Backend], None]] = (
             queue.SimpleQueue()
         )
+        self._is_busy = False
         self._backend: GuestBackend | None = open_backend()
 
     def wait_until_open(self) -> None:
         """Return: it is open from the start."""
 
     def post(self, function: Callable[[Backend], T]) -> Future[T]:
-        """Run ``function`` now, or soon if this is another thread."""
+        """Run ``function`` now, or soon if this is another thread.
+
+        Soon also within a job, as when the collector drops a resource there.
+        """
         if self._backend is None:
             raise DeviceError("the graphics device is closed")
         future: Future[T] = Future()
         self._posted.put(lambda backend: _answer(future, function, backend))
-        if threading.current_thread() is self._thread:
+        if not self._is_busy and threading.current_thread() is self._thread:
             self.call(lambda _: None)
         return future
 
@@ -60,9 +64,13 @@ class CallingThread:
             raise DeviceError("the graphics device is closed")
         self._check_thread()
         with self._backend.visit():
-            while not self._posted.empty():
-                self._posted.get()(self._backend)
-            return function(self._backend)
+            self._is_busy = True
+            try:
+                while not self._posted.empty():
+                    self._posted.get()(self._backend)
+                return function(self._backend)
+            finally:
+                self._is_busy = False
 
     def wait(self, future: Future[T]) -> T:
         """The result of a posted job."""

@@ -153,9 +153,8 @@ class GraphicsDevice:
         ``context`` (OpenGL 3.3 or later) is current on this thread, here and
         at every call of the device; calls from other threads raise
         DeviceError. There is no render thread: whatever is asked for is done
-        when the call returns. OpenGL's state is left as it was found, with
-        what was bound, down to pixel stores; a program that changes nothing
-        but that sees no difference.
+        when the call returns, and OpenGL's state is then as it was: what is
+        bound, blending, tests, masks, down to pixel stores.
 
         Where a window would be drawn into, the framebuffer is the one that
         ``context`` has bound when a list is submitted: a

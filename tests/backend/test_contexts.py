@@ -79,6 +79,17 @@ def test_the_error_lists_everything_that_was_tried() -> None:
         assert f"cause of {name}" in message
 
 
+@pytest.mark.usefixtures("no_context")
+def test_every_attempt_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level("INFO", "moka"), pytest.raises(ContextError):
+        open_context()
+    assert [record.name for record in caplog.records] == [
+        selection.__name__
+    ] * len(ORDER)
+    for label, message in zip(ORDER, caplog.messages, strict=True):
+        assert message.startswith(f"no context: {label}: cause of ")
+
+
 @pytest.mark.parametrize(
     ("platform", "hint"),
     [

@@ -72,6 +72,21 @@ def test_waiting_runs_what_others_have_posted() -> None:
     assert thread.wait(futures[0]) == 7
 
 
+def test_what_a_job_posts_waits_until_it_is_done() -> None:
+    thread, guest = opened()
+    seen: list[str] = []
+
+    def job(_: Backend) -> None:
+        thread.post(lambda _: seen.append("posted"))
+        seen.append("job")
+
+    visits = guest.visits
+    thread.post(job)
+    # By the same visit: nested ones would change what is bound.
+    assert seen == ["job", "posted"]
+    assert guest.visits == visits + 1
+
+
 def test_an_error_is_raised_at_once_and_is_not_the_end() -> None:
     def fail(_: Backend) -> None:
         raise ZeroDivisionError("a fault in the driver")

@@ -118,3 +118,18 @@ def test_a_broken_file_is_the_error_that_it_is(
     with pytest.raises(EnvironmentMapError, match="map"):
         load_map(path, cache)
     assert cache.usage().entries == 0
+
+
+def test_reading_and_finding_are_logged(
+    tmp_path: Path, cache: DiskCache, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = write(tmp_path / "map.hdr", texels())
+    with caplog.at_level(logging.INFO, "moka"):
+        _, keep = load_map(path, cache)
+        assert keep is not None
+        keep()
+        load_map(path, cache)
+    assert caplog.messages == [
+        f"{path}: read, 32 x 16 texels",
+        f"{path}: its texels are in the cache",
+    ]
