@@ -106,13 +106,15 @@ def table(head: str, rows: list[str]) -> str:
 
 def case_row(case: Case, outcome: Outcome) -> str:
     """A line of a table, and its picture."""
-    pixels = round(outcome.differing * SIZE**2)
-    allowed = round(case.allowed * SIZE**2)
+    compared = (SIZE // case.block) ** 2
+    pixels = round(outcome.differing * compared)
+    allowed = round(case.allowed * compared)
+    what = "" if case.block == 1 else f" of {compared} means"
     cells = [
         case.title,
         picture(case.title, outcome),
         f"{case.sees}. Expected: {case.by}.",
-        f"{pixels} of at most {allowed} by {case.tolerance:g}",
+        f"{pixels}{what}, at most {allowed}, by {case.tolerance:g}",
         verdict(outcome),
     ]
     return "| " + " | ".join(cells) + " |"

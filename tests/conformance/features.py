@@ -8,6 +8,7 @@ from tests.conformance.geometry import GEOMETRY
 from tests.conformance.lights import LIGHTS
 from tests.conformance.materials import MATERIALS
 from tests.conformance.scenes import SCENES
+from tests.conformance.texture_use import TEXTURE_USE
 from tests.conformance.textures import TEXTURES
 
 __all__ = ["FEATURES"]
@@ -15,7 +16,7 @@ __all__ = ["FEATURES"]
 FEATURES: dict[str, list[Case]] = {
     "Geometry and nodes": GEOMETRY,
     "Materials": MATERIALS,
-    "Textures": TEXTURES,
+    "Textures": [*TEXTURES, *TEXTURE_USE],
     "Lamps and cameras": LIGHTS,
     "Animations": ANIMATIONS,
     "Skins and morph targets": CHARACTERS,

@@ -1,10 +1,12 @@
 """Samplers, transforms and the forms in which images come."""
 
 import io
+import struct
 from typing import Any
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageCms
+from PIL.PngImagePlugin import PngInfo
 
 from tests.conformance.case import SLANTED_EDGES, Case
 from tests.conformance.painting import (
@@ -181,6 +183,19 @@ def _saved(image: Any, kind: str, **options: Any) -> bytes:
     return buffer.getvalue()
 
 
+def _with_profile(texels: Array) -> bytes:
+    """A PNG whose chunks say that it is linear and in another space."""
+    chunks = PngInfo()
+    chunks.add(b"gAMA", struct.pack(">I", 100_000))
+    profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("XYZ"))
+    return _saved(
+        Image.fromarray(texels),
+        "PNG",
+        pnginfo=chunks,
+        icc_profile=profile.tobytes(),
+    )
+
+
 def images() -> list[tuple[bytes, str, Array]]:
     """The forms of nine images, their media types, and what they show."""
     colour, odd = Image.fromarray(_BLOCKS), _picture(3, 5)
@@ -198,7 +213,7 @@ def images() -> list[tuple[bytes, str, Array]]:
             _BLOCKS,
         ),
         (png(_GREY[..., 0].astype(np.uint16) * 257), "png", _GREY),
-        (png(odd), "png", odd),
+        (_with_profile(odd), "png", odd),
         (_saved(colour, "JPEG", **jpeg), "jpeg", _BLOCKS),
         (
             _saved(colour, "JPEG", progressive=True, **jpeg),
@@ -276,7 +291,8 @@ TEXTURES = [
     ),
     Case(
         "Forms of images",
-        "PNG: grey, grey with alpha, palette, 16 bits, 5 x 3 texels; "
+        "PNG: grey, grey with alpha, palette, 16 bits, 5 x 3 texels with a "
+        "profile and a gamma that mean nothing; "
         "JPEG: baseline, progressive, CMYK, turned by EXIF",
         "painted: what was encoded; JPEG loses a few steps of 255",
         formats,

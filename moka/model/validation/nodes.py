@@ -18,11 +18,11 @@ __all__ = ["check_nodes"]
 _UNIT_ERROR = 0.00769
 _TRS = ("translation", "rotation", "scale")
 #: Transforms that change nothing.
-_IDENTITIES = {
+_IDENTITIES: dict[str, tuple[int, ...]] = {
     "translation": (0, 0, 0),
     "rotation": (0, 0, 0, 1),
     "scale": (1, 1, 1),
-    "matrix": np.eye(4).reshape(-1),
+    "matrix": (1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1),
 }
 
 

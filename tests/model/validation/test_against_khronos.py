@@ -39,9 +39,10 @@ FOLLOWING = {
 # The validator itself fails on this one.
 BEYOND_IT = {"number in a list of objects"}
 
-# What it has not heard of: JPEGs of four channels, KTX2 and AVIF.
+# What it has not heard of: JPEGs of four channels, KTX2 and AVIF. And what it
+# alone tells: that a colour profile means nothing.
 UNREAD = {
-    "Forms of images": {"IMAGE_DATA_INVALID"},
+    "Forms of images": {"IMAGE_DATA_INVALID", "IMAGE_FEATURES_UNSUPPORTED"},
     "KHR_texture_basisu": {"IMAGE_UNRECOGNIZED_FORMAT", "VALUE_NOT_IN_LIST"},
     "EXT_texture_avif": {"IMAGE_UNRECOGNIZED_FORMAT", "VALUE_NOT_IN_LIST"},
 }
