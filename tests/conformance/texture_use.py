@@ -75,7 +75,44 @@ def leaves() -> bytes:
     return file.glb()
 
 
+def fence() -> bytes:
+    """Upright stripes, ten pixels each, on a wall leaning away by 80 degrees.
+
+    A texel is a hundredth of a stripe, so that across them there are ten to
+    a pixel, and eight times as many along them.
+    """
+    file = SceneFile()
+    texels = np.zeros((1600, 1600), np.uint8)
+    texels[:, (np.arange(1600) // 100) % 2 == 0] = 255
+    texture = file.texture(png(texels), minFilter=9987, wrapS=33071)
+    uv = np.array([(0, 6), (1, 6), (1, 0), (0, 0)], float)
+    half = np.radians(80) / 2
+    file.node(
+        file.square(file.material(texture=texture), uv=uv),
+        rotation=[float(-np.sin(half)), 0, 0, float(np.cos(half))],
+        scale=[1, 4, 1],
+    )
+    return file.glb()
+
+
+def painted_fence(x: Array, y: Array) -> Array:
+    """Stripes, and no grey but at their edges."""
+    stripes = np.floor((x + 1) * 8) % 2 == 0
+    shown = inside(x, y, (0, 0), (1, 4 * np.cos(np.radians(80))))
+    return paint(black(x), shown & stripes, (1, 1, 1))
+
+
 TEXTURE_USE = [
+    Case(
+        "Anisotropic filtering",
+        "stripes on a wall that leans away, sharp although it does",
+        "painted; the two columns of pixels beside each edge are mixed",
+        fence,
+        painted_fence,
+        tolerance=0.05,
+        allowed=0.14,
+        options={"anisotropy": 16},
+    ),
     Case(
         "One image as colour and as data",
         "four colours; four metals of other roughnesses",
