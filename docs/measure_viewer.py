@@ -27,7 +27,7 @@ from moka.app.render_session import RenderRequest
 from moka.ui.viewer import Viewer
 
 SIZE = (1280, 720)
-PATIENCE_S = 120.0
+PATIENCE_S = 40.0
 
 
 @contextlib.contextmanager
@@ -37,7 +37,15 @@ def a_display() -> Iterator[str]:
         yield os.environ["DISPLAY"]
         return
     read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x720x24"]
+    command = [
+        "Xvfb",
+        "-displayfd",
+        str(write),
+        "-screen",
+        "0",
+        "1280x720x24",
+        "-noreset",
+    ]
     with subprocess.Popen(
         command, pass_fds=[write], stderr=subprocess.DEVNULL
     ) as server:

@@ -21,7 +21,7 @@ class TreeRows:
         self._names = names
         count = len(self._parents)
         children: list[list[int]] = [[] for _ in range(count)]
-        roots = []
+        roots: list[int] = []
         for row, parent in enumerate(self._parents.tolist()):
             (roots if parent < 0 else children[parent]).append(row)
         # Depth first: a subtree is a run of the order.

@@ -50,6 +50,7 @@ from moka.scene.lights import Light
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
 from moka.ui.comparison import Comparison
+from moka.ui.draft import Draft
 from moka.ui.file_watcher import FileWatcher
 from moka.ui.frame_times import PASS_INTERFACE, FrameTimes, mark_passes
 from moka.ui.interface import Interface
@@ -154,6 +155,7 @@ class Viewer(App):
                 panel.starts_open = panel.title in opened
         self.message: str | None = None
         self.times = FrameTimes()
+        self.draft = Draft()
         self.comparison = Comparison()
         self.measurement: ErrorMeasurement | None = None
         self.interface: Interface
@@ -218,6 +220,9 @@ class Viewer(App):
             self.controls.orbit(-_ROTATION * time.delta, 0.0)
             self._look()
         if self._is_moving():
+            self.draft.note_motion()
+        if self.draft.is_moving:
+            # Also for the whole picture when it rests.
             self.request_redraw()
         if self._settling or self._reads or self._work.doing:
             self._settling = max(self._settling - 1, 0)
@@ -233,6 +238,7 @@ class Viewer(App):
         pixels = self.window.framebuffer_size if self.window else self.size
         self.renderer.size = self._picture_size(size, pixels)
         self.times.add("wait", self.waited)
+        self.draft.note_wait(self.waited)
         places = self.times.begin_frame()
         with self.times.stage("scene"):
             if places:
@@ -261,6 +267,8 @@ class Viewer(App):
     def _draw_picture(
         self, commands: CommandList, times: Timestamps | None
     ) -> None:
+        settings = self.renderer.settings
+        self.renderer.settings = self.draft.settings(settings)
         try:
             if self.debug_view is None and self.window is not None:
                 self.comparison.draw(
@@ -271,6 +279,8 @@ class Viewer(App):
             self.error = str(error)
             self._remove_model()
             self._draw_scene(commands)
+        finally:
+            self.renderer.settings = settings
 
     def _draw_scene(self, commands: CommandList) -> None:
         if self.debug_view is None:
@@ -512,6 +522,7 @@ class Viewer(App):
 
     def _look(self) -> None:
         self.controls.apply(self.camera)
+        self.draft.note_motion()
         self.request_redraw()
 
     def _frame(self, bounds: Any) -> None:
@@ -715,7 +726,8 @@ class Viewer(App):
         path, self._wants_picture = self._wants_picture, None
         if path is None:
             return
-        if self.debug_view is not None or not self.renderer.is_complete:
+        is_whole = self.renderer.is_complete and not self.draft.is_now
+        if self.debug_view is not None or not is_whole:
             # A picture is one of light, and of all of it.
             self._wants_picture = path
             return

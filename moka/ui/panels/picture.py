@@ -48,6 +48,10 @@ class PicturePanel(Panel):
             gamma=power if is_power else None,
             samples=_SAMPLES.get(samples, settings.samples),
         )
+        if settings.samples > 1:
+            _, viewer.draft.is_wanted = imgui.checkbox(
+                "fewer in motion, if slow", viewer.draft.is_wanted
+            )
         self._background(imgui, viewer)
 
     def _background(self, imgui: Any, viewer: "Viewer") -> None:
