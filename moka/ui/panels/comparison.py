@@ -64,9 +64,9 @@ class ComparisonPanel(Panel):
         for name, value in (
             ("relative RMSE", result.relative_rmse),
             ("median error", result.median),
-            ("of the truth itself", result.truth_error),
+            ("noise of the truth", result.truth_error),
         ):
             if value is not None:
                 imgui.text_disabled(name)
-                imgui.same_line(11 * imgui.get_font_size())
+                imgui.same_line(12 * imgui.get_font_size())
                 imgui.text(f"{value:.2%}")
