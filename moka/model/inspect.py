@@ -103,8 +103,12 @@ def format_description(description: dict[str, Any]) -> str:
         f"  nodes       {_nodes_text(description)}",
         f"  meshes      {description['meshes']} of "
         f"{description['primitives']} primitives",
-        f"  drawn       {scene['instances']} instances, "
-        + ", ".join(f"{scene[kind]} {kind}" for kind in _KINDS if scene[kind]),
+        "  drawn       "
+        + ", ".join(
+            f"{scene[kind]} {kind}"
+            for kind in ("instances", *_KINDS)
+            if scene[kind] or kind == "instances"
+        ),
     ]
     if scene["bounds"] is not None:
         least, greatest = (

@@ -262,8 +262,8 @@ def _decoder() -> msgspec.json.Decoder[Document]:
 def decode_document(text: bytes | memoryview, where: str) -> Document:
     """Decode the JSON of a glTF file.
 
-    Raises ModelError naming ``where`` and the JSON path if the text is not
-    JSON, not UTF-8 or not a glTF 2 document.
+    Raises ModelError naming ``where`` and the JSON path, or the line, if the
+    text is not JSON, not UTF-8 or not a glTF 2 document.
     """
     try:
         return _decoder().decode(text)
@@ -274,7 +274,10 @@ def decode_document(text: bytes | memoryview, where: str) -> Document:
     except RecursionError as error:
         raise ModelError(f"{where}: the JSON is nested too deeply") from error
     except msgspec.DecodeError as error:
-        raise ModelError(f"{where}: {_lower(str(error))}") from error
+        from moka.model.json_fault import describe_fault
+
+        fault = describe_fault(text, str(error))
+        raise ModelError(f"{where}: {fault}") from error
 
 
 def decode_part(

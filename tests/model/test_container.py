@@ -89,7 +89,7 @@ def test_ignores_zeros_behind_the_text_and_bytes_behind_the_file() -> None:
             "chunk 0 of the .glb needs 4294967295 bytes",
         ),
         (WHOLE.replace(b"JSON", b"BIN\0", 1), "is not JSON"),
-        (b"{", "input data was truncated"),
+        (b"{", "JSON ends before it is complete"),
         (b'{"asset": nope}', "JSON is malformed"),
         (b'{"asset": {"version": "\xff"}}', "not UTF-8"),
         (b"{}", "missing required field 'asset'"),
