@@ -4,6 +4,7 @@ import pytest
 
 from moka.core.errors import ModelError
 from moka.model import load_model
+from moka.model.validation.validate import validate
 
 
 @pytest.mark.parametrize(
@@ -26,3 +27,6 @@ def test_a_fault_has_its_place(text: bytes, message: str) -> None:
         load_model(text)
     assert str(caught.value).startswith(f"<bytes>: {message}")
     assert "\n" not in str(caught.value)
+    (issue,) = validate(text).issues
+    assert issue.code == "INVALID_JSON"
+    assert issue.message.startswith(message)

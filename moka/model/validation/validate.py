@@ -6,6 +6,7 @@ from typing import Any
 import msgspec
 
 from moka.model.container import read_file
+from moka.model.json_fault import describe_fault
 from moka.model.validation.accessors import check_accessors
 from moka.model.validation.animations import check_animations
 from moka.model.validation.buffers import check_buffers
@@ -52,7 +53,10 @@ def validate(source: Path | bytes) -> Report:
         return report
     try:
         document: Any = msgspec.json.decode(bytes(text).rstrip(b"\0"))
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+    except msgspec.DecodeError as error:
+        report.add("INVALID_JSON", (), describe_fault(text, str(error)))
+        return report
+    except (UnicodeDecodeError, RecursionError) as error:
         report.add("INVALID_JSON", (), str(error))
         return report
     if not isinstance(document, dict):
