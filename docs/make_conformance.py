@@ -18,6 +18,7 @@ sys.path.insert(0, str(DOCS.parent))
 from moka.core.colour import encode_srgb8  # noqa: E402
 from moka.model import load_model  # noqa: E402
 from tests.conformance.case import SIZE, Case, Outcome  # noqa: E402
+from tests.conformance.elsewhere import ELSEWHERE  # noqa: E402
 from tests.conformance.features import FEATURES  # noqa: E402
 from tests.conformance.samples import (  # noqa: E402
     DEPTH_ERROR,
@@ -89,6 +90,7 @@ def main() -> None:
         rows.append(sample_row(sample, outcome))
     head = "model | moka, rays | what | depth off | colour off | left out | "
     parts.append(SAMPLE_INTRODUCTION + "\n" + table(head, rows))
+    parts.append(elsewhere())
     count = sum(map(len, FEATURES.values())) + len(SAMPLES)
     summary = f"{count - len(failed)} of {count} cases pass.\n"
     page = "\n".join([INTRODUCTION, summary, *parts])
@@ -98,8 +100,17 @@ def main() -> None:
         sys.exit("failed: " + ", ".join(failed))
 
 
+def elsewhere() -> str:
+    """A table of claims and their tests, which say pass or fail."""
+    rows = [f"| {claim} | `{test}` |" for claim, test in ELSEWHERE.items()]
+    return (
+        "## What no single picture shows\n\nThese are held by other tests.\n\n"
+        + table("what | test ", rows)
+    )
+
+
 def table(head: str, rows: list[str]) -> str:
-    """Markdown of a table whose last column is a verdict."""
+    """Markdown of a table."""
     rule = " --- |" * (head.count("|") + 1)
     return "\n".join([f"| {head}|", f"|{rule}", *rows, ""])
 

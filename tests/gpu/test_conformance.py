@@ -8,6 +8,7 @@ import pytest
 from moka.model.validation.issues import Severity
 from moka.model.validation.validate import validate
 from tests.conformance.case import Case
+from tests.conformance.elsewhere import ELSEWHERE
 from tests.conformance.features import FEATURES
 from tests.conformance.samples import SAMPLES, Sample
 
@@ -65,6 +66,13 @@ def test_titles_are_told_apart() -> None:
     assert len(set(titles)) == len(titles)
 
 
+@pytest.mark.parametrize("test", ELSEWHERE.values())
+def test_what_is_held_elsewhere_is(test: str) -> None:
+    path, _, name = test.partition("::")
+    text = (DOCS.parent / path).read_text(encoding="utf-8")
+    assert f"\ndef {name}(" in text
+
+
 def test_the_page_has_every_case() -> None:
     page = (DOCS / "conformance.md").read_text(encoding="utf-8")
     rows = [
@@ -76,5 +84,7 @@ def test_the_page_has_every_case() -> None:
         each.title for each in (*CASES, *SAMPLES)
     ], "run make conformance"
     assert all(cells[-1] == "pass" for cells in rows)
+    for test in ELSEWHERE.values():
+        assert f"`{test}`" in page, "run make conformance"
     for name in re.findall(r"\((images/.*?)\)", page):
         assert (DOCS / name).is_file()
