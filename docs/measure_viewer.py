@@ -131,7 +131,7 @@ def wait_for(condition: Callable[[], bool]) -> None:
 
 def measure_frames(viewer: Watched, picture: str | None) -> None:
     """The story of somebody who looks at a clock."""
-    wait_for(lambda: viewer.model is not None and not viewer._work.doing)
+    wait_for(lambda: viewer.model is not None and not viewer.work.doing)
     time.sleep(3.0)
     print(f"longest wait of the window {1000 * viewer.longest:.0f} ms")
     if picture:

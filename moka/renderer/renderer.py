@@ -84,9 +84,10 @@ class Renderer:
     ``cache`` is where preintegrated lighting is looked for, and written to
     by :meth:`keep_lighting`. ``materials`` is a pool of this device in which
     images may be decoding already; the renderer closes it. One that is
-    ``beside`` another of its device shares programs, geometry and textures
-    with it, and closes nothing; both are to draw the same scene with the
-    same :attr:`RenderSettings.textures`, each into command lists of its own.
+    ``beside`` another of its device shares programs, geometry, textures and
+    the cache with it, and closes nothing; both are to draw the same scene
+    with the same :attr:`RenderSettings.textures`, each into command lists of
+    its own.
 
     With ``shows_stops`` the display has a colour for each stop of luminance
     in the place of what the picture looks like. Only the pixels of ``area``
@@ -116,6 +117,7 @@ class Renderer:
         self.area: tuple[int, int, int, int] | None = None
         self.at_centres = False
         self._to_window = to_window
+        self._cache = cache
         self._is_guest = beside is not None
         if beside is None:
             self._passes = FullscreenPasses(device)
@@ -127,6 +129,7 @@ class Renderer:
             self._programs = beside._programs
             self._geometry = beside._geometry
             self._materials = beside._materials
+            cache = beside._cache
         passes = self._passes
         self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)

@@ -14,7 +14,6 @@ from msgspec.structs import replace
 
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Timestamps
-from moka.lighting.disk_cache import DiskCache
 from moka.renderer.renderer import Renderer
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
@@ -90,7 +89,6 @@ class Comparison:
         main: Renderer,
         scene: Scene,
         camera: Camera,
-        cache: DiskCache | None = None,
         times: Timestamps | None = None,
     ) -> None:
         """Submit the other picture, and leave ``main`` its own side.
@@ -104,9 +102,7 @@ class Comparison:
                 self.renderer.release_targets()
             return
         if self.renderer is None:
-            self.renderer = Renderer(
-                main.device, to_window=True, cache=cache, beside=main
-            )
+            self.renderer = Renderer(main.device, to_window=True, beside=main)
         other = self.renderer
         width, height = other.size = main.size
         left = round(self.divider * width)

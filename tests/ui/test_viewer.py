@@ -409,7 +409,7 @@ def test_what_was_chosen_is_remembered(
         original(viewer, *given)
         if viewer.environment_source != str(environment):
             viewer.open_environment(str(environment))
-        elif viewer.model is not None and not viewer._work.doing:
+        elif viewer.model is not None and not viewer.work.doing:
             viewer.change_settings(tone_map="agx")
             viewer.quit()
         viewer.request_redraw()
@@ -470,7 +470,7 @@ def test_the_window_answers_while_images_are_decoded(
         viewer.open_model(slow)
         person.wait("decoding", begun.is_set)
         assert viewer.model is before
-        assert viewer._work.doing == "decoding images of slow.glb: 0 of 1"
+        assert viewer.work.doing == "decoding images of slow.glb: 0 of 1"
         frame, distance = viewer.frame, viewer.controls.distance
         person.act("mousemove 80 150 click 4")
         person.wait("a zoom", lambda: viewer.controls.distance < distance)

@@ -50,7 +50,7 @@ class EnvironmentPanel(Panel):
             "%.2f",
             logarithmic=True,
         )
-        imgui.text_disabled("drop a .hdr or .exr file to light with it")
+        imgui.text_disabled("drop a .hdr or .exr to light with it")
 
 
 class LightingPanel(Panel):
