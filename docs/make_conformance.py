@@ -36,18 +36,17 @@ INTRODUCTION = f"""\
 
 What glTF files must look like, and what moka makes of them. Each row is a
 small file that `tests/conformance` writes with pygltflib: on the left moka's
-picture of it, on the right the expectation, which is made without moka's
+picture of it, beside it the expectation, which is made without moka's
 renderer wherever that is possible. *Painted* is a formula that gives the
 radiance of every pixel in float64; otherwise it is the picture of another
 file, which says the same in plainer words.
 
-The figure is the number of pixels, of {SIZE} x {SIZE}, whose linear radiance
+The figure is how many of {SIZE} x {SIZE} pixels have a linear radiance that
 is further off than the tolerance in any channel. This page was made by `make
 conformance`, which rendered every picture and computed every figure and every
 verdict; `tests/gpu/test_conformance.py` holds the same cases to the same
 bounds whenever the tests run.
 """
-
 
 SAMPLE_INTRODUCTION = f"""\
 ## Sample models
@@ -60,7 +59,11 @@ share of the model's pixels whose depth is off by more than {DEPTH_ERROR:.1%}
 or that only one of the two has; the second is by how much base colours differ
 on average, as means of three by three pixels. Lighting is not part of it.
 What a file says beyond that and moka leaves out is in the last but one column.
-The pictures, base colours again, are of models in the public domain.
+"""
+
+CREDITS = """
+Base colours again, moka's and those of the rays, of the models that are in
+the public domain:
 """
 
 
@@ -80,16 +83,21 @@ def main() -> None:
             if not outcome.passed:
                 failed.append(case.title)
             rows.append(case_row(case, outcome))
-        head = "what | moka, expectation | one must see | pixels off | "
+        head = "moka, expectation | what one must see "
         parts.append(f"## {subject}\n\n{table(head, rows)}")
-    rows = []
+    rows, shown = [], []
     for sample in SAMPLES:
         outcome = sample.run(ASSETS)
         if not outcome.passed:
             failed.append(sample.title)
         rows.append(sample_row(sample, outcome))
-    head = "model | moka, rays | what | depth off | colour off | left out | "
+        # Pictures of the others are not ours to give away.
+        if sample.credit:
+            text = f"{sample.title}, {sample.credit}"
+            shown.append(f"| {picture(sample.title, outcome)} | {text} |")
+    head = "model | what | depth off | colour off | left out | "
     parts.append(SAMPLE_INTRODUCTION + "\n" + table(head, rows))
+    parts.append(CREDITS.lstrip() + "\n" + table("moka, rays | model ", shown))
     parts.append(elsewhere())
     count = sum(map(len, FEATURES.values())) + len(SAMPLES)
     summary = f"{count - len(failed)} of {count} cases pass.\n"
@@ -118,33 +126,27 @@ def table(head: str, rows: list[str]) -> str:
 def case_row(case: Case, outcome: Outcome) -> str:
     """A line of a table, and its picture."""
     compared = (SIZE // case.block) ** 2
-    pixels = round(outcome.differing * compared)
+    off = round(outcome.differing * compared)
     allowed = round(case.allowed * compared)
-    what = "" if case.block == 1 else f" of {compared} means"
-    cells = [
-        case.title,
-        picture(case.title, outcome),
-        f"{case.sees}. Expected: {case.by}.",
-        f"{pixels}{what}, at most {allowed}, by {case.tolerance:g}",
-        verdict(outcome),
+    of = "pixels" if case.block == 1 else f"of {compared} means"
+    lines = [
+        f"**{case.title}**: {verdict(outcome)}",
+        f"{case.sees[0].upper()}{case.sees[1:]}.",
+        f"Expected: {case.by}.",
+        f"{off} {of} off by more than {case.tolerance:g}, allowed {allowed}.",
     ]
-    return "| " + " | ".join(cells) + " |"
+    return f"| {picture(case.title, outcome)} | {'<br>'.join(lines)} |"
 
 
 def sample_row(sample: Sample, outcome: Outcome) -> str:
-    """A line of the table of samples; a picture where it may be shown."""
-    # Pictures of the others are nobody's to give away.
-    shown = ""
-    if sample.credit:
-        shown = f"{picture(sample.title, outcome)} ({sample.credit})"
-    left_out = load_model(ASSETS / "models" / sample.path)
+    """A line of the table of samples."""
+    model = load_model(ASSETS / "models" / sample.path)
     cells = [
-        sample.title,
-        shown,
+        f"**{sample.title}**",
         sample.shows,
-        f"{outcome.differing:.3%} of at most {sample.allowed:.1%}",
-        f"{outcome.mean:.4f} of at most {sample.colour:g}",
-        ", ".join(f"`{name}`" for name in left_out.unsupported_extensions),
+        f"{outcome.differing:.3%}, allowed {sample.allowed:.1%}",
+        f"{outcome.mean:.4f}, allowed {sample.colour:g}",
+        ", ".join(f"`{name}`" for name in model.unsupported_extensions),
         verdict(outcome),
     ]
     return "| " + " | ".join(cells) + " |"
@@ -152,7 +154,7 @@ def sample_row(sample: Sample, outcome: Outcome) -> str:
 
 def verdict(outcome: Outcome) -> str:
     """How the check ended."""
-    return "pass" if outcome.passed else "**fail**"
+    return "pass" if outcome.passed else "FAIL"
 
 
 def picture(title: str, outcome: Outcome) -> str:
@@ -162,7 +164,9 @@ def picture(title: str, outcome: Outcome) -> str:
     gap = np.full((len(pair[0]), GAP, 3), 255, np.uint8)
     both = Image.fromarray(np.hstack([pair[0], gap, pair[1]]))
     both.save(PICTURES / f"{name}.png", optimize=True)
-    return f"![{title}](images/conformance/{name}.png)"
+    # A table would shrink it to a stamp.
+    style = '{ style="max-width: none" }'
+    return f"![{title}](images/conformance/{name}.png){style}"
 
 
 def alphanumeric(word: str) -> str:
