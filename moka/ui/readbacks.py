@@ -32,6 +32,11 @@ class Readbacks:
         """Whether anything has not arrived."""
         return bool(self._reads)
 
+    @property
+    def wants_picture(self) -> bool:
+        """Whether the next whole picture is to be saved."""
+        return self._wants_picture is not None
+
     def save_picture(self, path: Path) -> None:
         """Save the next whole picture."""
         self._wants_picture = path

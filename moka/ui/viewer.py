@@ -25,7 +25,7 @@ from moka.app.render_session import RenderRequest
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Timestamps
 from moka.commands.sort_key import SortKey
-from moka.core.errors import MokaError
+from moka.core.errors import MokaError, OptionError
 from moka.renderer.settings import RenderSettings
 from moka.scene.camera import Camera
 from moka.scene.camera_choice import Look, Orbit, look_text
@@ -213,6 +213,9 @@ class Viewer(App):
                 self.comparison.draw(
                     self.renderer, self.scene, self.camera, times
                 )
+                if self.readbacks.wants_picture:
+                    # All of it, over the other one for a moment.
+                    self.renderer.area = None
             self._draw_scene(commands)
         except MokaError as error:
             self.error = str(error)
@@ -237,10 +240,17 @@ class Viewer(App):
         return self.renderer.settings
 
     def change_settings(self, **changes: Any) -> None:
-        """Replace settings by name, if they are others than now."""
+        """Replace settings by name, if they are others than now.
+
+        What means nothing, as a person may type it, is told and changes
+        nothing.
+        """
         settings = self.renderer.settings
         if any(getattr(settings, name) != changes[name] for name in changes):
-            self.renderer.settings = replace(settings, **changes)
+            try:
+                self.renderer.settings = replace(settings, **changes)
+            except OptionError as error:
+                self.error = str(error)
             self.request_redraw()
 
     @property

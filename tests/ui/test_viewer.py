@@ -484,3 +484,41 @@ def test_the_window_answers_while_images_are_decoded(
         assert viewer.model is shown
 
     watch(story)
+
+
+def test_a_picture_is_saved_whole_where_another_one_stands_beside_it(
+    watch: Watch, tmp_path: Path
+) -> None:
+    saved = [tmp_path / name for name in ("alone.png", "beside.png")]
+
+    def story(person: Person, viewer: Viewer) -> None:
+        for path in saved:
+            viewer.save_picture(path)
+            person.wait("a file", lambda path=path: path.exists())  # type: ignore[misc]
+            drawn = {viewer.frame}
+            viewer.comparison.choice = "BRDF blinn-phong"
+
+            def is_drawn(drawn: set[Any] = drawn) -> bool:
+                drawn.add(viewer.frame)
+                viewer.request_redraw()
+                return len(drawn) > 3
+
+            person.wait("frames", is_drawn)
+
+    watch(story)
+    alone, beside = (np.asarray(PillowImage.open(path)) for path in saved)
+    np.testing.assert_array_equal(alone, beside)
+
+
+def test_numbers_that_mean_nothing_are_told(watch: Watch) -> None:
+    """As somebody types them into a slider."""
+
+    def story(person: Person, viewer: Viewer) -> None:
+        before = viewer.settings
+        viewer.change_settings(exposure=1000.0)
+        assert viewer.error is not None
+        assert "exposure" in viewer.error
+        assert viewer.settings == before
+        person.wait("an answer", lambda: viewer.frame is not None)
+
+    watch(story)

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from moka.lighting.environment import BRIGHTEST
 from moka.renderer.settings import BRDFS, DIFFUSE_MODELS, IBL_MODES
 from moka.ui.panels.panel import Panel
 from moka.ui.widgets import choice, slider
@@ -41,7 +42,7 @@ class EnvironmentPanel(Panel):
             "%.0f deg",
         )
         scene.environment_rotation = math.radians(degrees)
-        scene.environment_intensity = slider(
+        intensity = slider(
             imgui,
             "intensity",
             scene.environment_intensity,
@@ -50,6 +51,8 @@ class EnvironmentPanel(Panel):
             "%.2f",
             logarithmic=True,
         )
+        # A person may type any number.
+        scene.environment_intensity = min(max(intensity, 0.0), BRIGHTEST)
         imgui.text_disabled("drop a .hdr or .exr to light with it")
 
 
