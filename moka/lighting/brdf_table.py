@@ -1,45 +1,66 @@
-"""The table of a specular lobe's directional albedo, made on the GPU."""
+"""The tables of the specular lobes' directional albedo.
 
-from moka.commands.descriptors import (
-    Attachment,
-    PixelFormat,
-    TextureDescriptor,
-)
+They depend on nothing but the formulas, so that they are made once, by
+:mod:`moka.lighting.make_brdf_tables`, and come along as assets: to draw one
+takes as long as to read a thousand.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from moka.commands.descriptors import PixelFormat, TextureDescriptor
 from moka.commands.handles import Handle
+from moka.core.errors import MokaError
+from moka.core.resources import asset_folder
 from moka.graphics.device import GraphicsDevice
-from moka.graphics.passes import FullscreenPasses
 from moka.lighting.environment_maps import CUBE_SAMPLER
 
-__all__ = ["TABLE", "TABLE_SAMPLER", "make_brdf_table"]
+__all__ = [
+    "TABLE",
+    "TABLE_SAMPLER",
+    "TABLE_SIZE",
+    "load_brdf_table",
+    "read_brdf_table",
+    "table_path",
+]
 
-# Within 0.0028 of float64 quadrature at every texel and, where n.v is above
-# 0.02, between them.
-_SIZE = 128
-_SAMPLES = 512
+TABLE_SIZE = 128
 
-TABLE = TextureDescriptor(PixelFormat.RG32F, _SIZE, _SIZE, label="table")
+TABLE = TextureDescriptor(
+    PixelFormat.RG32F, TABLE_SIZE, TABLE_SIZE, label="table"
+)
 TABLE_SAMPLER = CUBE_SAMPLER
 
 
-def make_brdf_table(
-    device: GraphicsDevice, passes: FullscreenPasses, brdf: str
-) -> Handle:
-    """Make the table of ``gltf``, ``karis`` or ``blinn-phong``.
+def table_path(brdf: str) -> Path:
+    """The file of the table of ``gltf``, ``karis`` or ``blinn-phong``."""
+    return asset_folder() / f"albedo-{brdf}.u16"
 
-    x is n.v, y is roughness, red the scale of f0, green that of f90.
+
+@cache
+def read_brdf_table(brdf: str) -> NDArray[np.float32]:
+    """The table (128, 128, 2): rows of roughness, columns of n.v.
+
+    From 0 at the first to 1 at the last. The lobe reflects f0 times the
+    first value and f90 times the second of uniform light (Karis 2013,
+    equation 8). The file has both as parts of 65535, little-endian. Raises
+    MokaError if it is missing from the installation or not whole.
     """
-    from moka.lighting.preintegration_passes import PreintegrationPasses
+    path = table_path(brdf)
+    try:
+        parts = np.fromfile(path, "<u2")
+        table = parts.reshape(TABLE_SIZE, TABLE_SIZE, 2)
+    except (OSError, ValueError) as error:
+        raise MokaError(
+            f"{path}: missing or broken; install moka-pbr again"
+        ) from error
+    values: NDArray[np.float32] = np.divide(table, 65535, dtype=np.float32)
+    return values
 
-    table = device.create_texture(TABLE)
-    jobs = PreintegrationPasses(device, passes)
-    jobs.draw(
-        "brdf_table.frag",
-        {
-            f"MOKA_BRDF_{brdf.upper().replace('-', '_')}": 1,
-            "MOKA_SAMPLE_COUNT": _SAMPLES,
-            "MOKA_TABLE_SIZE": _SIZE,
-        },
-        Attachment(table),
-    )
-    jobs.run()
-    return table
+
+def load_brdf_table(device: GraphicsDevice, brdf: str) -> Handle:
+    """The table as a texture: x is n.v, y is roughness."""
+    return device.create_texture(TABLE, [read_brdf_table(brdf)])

@@ -14,10 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import TextureDescriptor, TextureKind
-from moka.commands.handles import Handle
 from moka.core.log import get_logger
 from moka.graphics.device import GraphicsDevice
-from moka.lighting.brdf_table import TABLE
 from moka.lighting.code_digest import code_digest
 from moka.lighting.disk_cache import Arrays, DiskCache
 from moka.lighting.environment import Sun
@@ -33,7 +31,7 @@ _LOGGER = get_logger(__name__)
 
 
 class LightingCache:
-    """Finds and keeps lighting and BRDF tables of one device.
+    """Finds and keeps lighting of one device.
 
     Without ``files`` it finds nothing and keeps nothing. What is kept is
     read back and written by :meth:`flush`, at a time when nobody waits.
@@ -66,22 +64,6 @@ class LightingCache:
         if self._files is not None and _takes_time(request):
             key = self._environment_key(request)
             self._pending[key] = lambda: self._read_lighting(lighting)
-
-    def load_table(self, brdf: str) -> Handle | None:
-        """The BRDF table of ``brdf``, if it was made before."""
-        if self._files is None:
-            return None
-        arrays = self._files.load(self._key("table", brdf))
-        if arrays is None:
-            return None
-        return self._device.create_texture(TABLE, [arrays["table"]])
-
-    def keep_table(self, brdf: str, table: Handle) -> None:
-        """Write ``table`` at the next :meth:`flush`."""
-        if self._files is not None:
-            self._pending[self._key("table", brdf)] = lambda: {
-                "table": self._device.read_texture(table)
-            }
 
     @property
     def is_pending(self) -> bool:

@@ -14,7 +14,7 @@ __all__ = ["LightingMaker"]
 
 
 class LightingMaker:
-    """Makes lighting and BRDF tables on one device, each only once.
+    """Makes lighting on one device, and loads BRDF tables, each only once.
 
     ``cache`` is where results of earlier runs are found and new ones go;
     None for none.
@@ -52,13 +52,9 @@ class LightingMaker:
     def table(self, brdf: str) -> Handle:
         """The BRDF table of ``brdf``; see moka.lighting.brdf_table."""
         if brdf not in self._tables:
-            table = self._cache.load_table(brdf)
-            if table is None:
-                from moka.lighting.brdf_table import make_brdf_table
+            from moka.lighting.brdf_table import load_brdf_table
 
-                table = make_brdf_table(self._device, self._passes, brdf)
-                self._cache.keep_table(brdf, table)
-            self._tables[brdf] = table
+            self._tables[brdf] = load_brdf_table(self._device, brdf)
         return self._tables[brdf]
 
     @property

@@ -84,7 +84,6 @@ def test_other_light_is_another_entry() -> None:
         {"environment": uneven(1)},
         {"suns": 2},
         {"irradiance": "cube"},
-        {"brdf": "karis"},
         {
             "environment": Environment(
                 uneven().pixels, (Sun((0, 1, 0), (1,) * 3),)
@@ -107,9 +106,8 @@ def test_other_light_is_another_entry() -> None:
 @pytest.mark.parametrize("environment", ["furnace", "none"])
 def test_what_takes_no_time_is_not_kept(environment: str) -> None:
     pixels(environment=environment)
-    tables = 131072
     folder = Path(os.environ["MOKA_CACHE_DIR"])
-    assert sum(path.stat().st_size for path in folder.glob("*")) < 1.1 * tables
+    assert not list(folder.glob("*"))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc tells")
@@ -200,4 +198,4 @@ def test_a_loop_keeps_the_light_of_every_environment() -> None:
     moka.run(Loop, headless=True, frames=3, size=SIZE, cache=False)
     assert not entries()
     moka.run(Loop, headless=True, frames=3, size=SIZE)
-    assert len(entries()) == 3 + 1  # and a table
+    assert len(entries()) == 3
