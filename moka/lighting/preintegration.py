@@ -6,6 +6,7 @@ and a small cube holds irradiance. Each is made only when something asks for
 it.
 """
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +20,10 @@ from moka.lighting.importance import importance_table
 from moka.lighting.irradiance_cube import irradiance_cube
 from moka.lighting.preintegration_passes import PreintegrationPasses
 from moka.lighting.radiance_cube import (
+    ALL_FACES,
     cube_size,
     downsample,
+    faces_that_differ,
     map_to_cube,
     uniform_cube,
 )
@@ -117,7 +120,8 @@ class Preintegrator:
         )
         source = passes.scratch(passes.cube(size, size.bit_length()))
         # A base is so even that one bilinear sample a texel is as good.
-        map_to_cube(passes, base, height, source, size, 1 if has_suns else 2)
+        uneven: Collection[int] = () if has_suns else ALL_FACES
+        map_to_cube(passes, base, height, source, size, uneven)
         downsample(passes, source, size)
         if specular:
             maps.specular_levels = specular_level_count(size)
@@ -127,7 +131,10 @@ class Preintegrator:
                 # A mirror shows the suns. The rougher levels lack them:
                 # there a sun is a light, in the measure in which these
                 # levels are read.
-                map_to_cube(passes, maps.map, height, maps.specular, size, 2)
+                uneven = faces_that_differ(environment.full, environment.base)
+                map_to_cube(
+                    passes, maps.map, height, maps.specular, size, uneven
+                )
             prefilter(passes, source, size, maps.specular, int(has_suns))
         if irradiance:
             maps.irradiance = irradiance_cube(passes, source, size)

@@ -1,6 +1,6 @@
 """Full-screen passes into faces and levels of cubes, run in one go."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from moka.commands.command_list import CommandList
@@ -74,21 +74,22 @@ class PreintegrationPasses:
         source: TextureBinding,
         *,
         defines: Mapping[str, str | int] | None = None,
-        subdivisions: int = 1,
+        subdivisions: Sequence[int] = (1,) * 6,
         samples: bytes = b"",
     ) -> None:
         """Draw the six faces of one level, of ``size`` texels, of ``cube``.
 
-        ``samples`` is the block ``PrefilterSamples``, where there is one.
+        ``subdivisions`` are those of each face's texels, ``samples`` is the
+        block ``PrefilterSamples``, where there is one.
         """
         uniforms = (
             (UniformBinding("PrefilterSamples", self._buffer(samples)),)
             if samples
             else ()
         )
-        for face in range(6):
+        for face, divisions in enumerate(subdivisions):
             block = _CUBE_FACE.pack(
-                {"face": face, "size": size, "subdivisions": subdivisions}
+                {"face": face, "size": size, "subdivisions": divisions}
             )
             faces = UniformBinding("CubeFace", self._buffer(block.tobytes()))
             self.draw(

@@ -1,6 +1,7 @@
 """From an equirectangular map to a cube of radiance and its levels."""
 
 import math
+from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,17 +18,22 @@ from moka.lighting.environment_maps import (
     CUBE_SAMPLER,
     MAP_SAMPLER,
 )
+from moka.lighting.equirectangular import uv_to_direction
 from moka.lighting.preintegration_passes import PreintegrationPasses
 from moka.lighting.specular_cube import SMALLEST_SPECULAR
 
 __all__ = [
+    "ALL_FACES",
     "cube_size",
     "downsample",
+    "faces_that_differ",
     "map_to_cube",
     "uniform_cube",
 ]
 
 LARGEST_CUBE = 1024
+
+ALL_FACES = range(6)
 
 
 def cube_size(map_height: int, *, half: bool = False) -> int:
@@ -58,21 +64,50 @@ def map_to_cube(
     map_height: int,
     cube: Handle,
     size: int,
-    subdivisions: int,
+    fine: Collection[int],
 ) -> None:
     """Resample a map of ``map_height`` rows into level 0 of ``cube``.
 
-    Each texel is the mean of ``subdivisions`` squared samples; of more, if
-    it covers several texels of a large map.
+    A texel of the faces ``fine`` is the mean of four samples, those of the
+    others are one bilinear sample, which for what is even is as good. All
+    are of more, if a texel covers several texels of a large map.
     """
+    least = -(-map_height // (2 * size))
     passes.cube_level(
         "equirectangular_to_cube.frag",
         cube,
         0,
         size,
         TextureBinding("environment_map", map_texture, MAP_SAMPLER),
-        subdivisions=max(subdivisions, -(-map_height // (2 * size))),
+        subdivisions=[
+            max(2 if face in fine else 1, least) for face in ALL_FACES
+        ],
     )
+
+
+def faces_that_differ(
+    one: NDArray[np.float32], other: NDArray[np.float32]
+) -> frozenset[int]:
+    """The faces of a cube on which two maps (H, W, 3) are not the same.
+
+    With the neighbours of each texel, which bilinear sampling reads.
+    """
+    height, width, _ = one.shape
+    rows, columns = np.nonzero((one != other).any(axis=2))
+    faces: set[int] = set()
+    for down in (-1.0, 0.0, 1.0):
+        for right in (-1.0, 0.0, 1.0):
+            place = np.column_stack(
+                [
+                    (columns + 0.5 + right) / width,
+                    np.clip((rows + 0.5 + down) / height, 0.0, 1.0),
+                ]
+            )
+            direction = uv_to_direction(place)
+            axis = np.abs(direction).argmax(axis=1)
+            side = np.take_along_axis(direction, axis[:, None], axis=1) < 0
+            faces.update((2 * axis + side[:, 0]).tolist())
+    return frozenset(faces)
 
 
 def downsample(passes: PreintegrationPasses, cube: Handle, size: int) -> None:
