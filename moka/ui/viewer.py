@@ -13,6 +13,7 @@ in :mod:`moka.ui.opened_files`, keys and the pointer in
 import math
 import os
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,13 @@ from msgspec.structs import replace
 
 from moka.app.application import App, GameTime
 from moka.app.command_text import command_text
-from moka.app.events import DropEvent, Event
+from moka.app.events import (
+    DropEvent,
+    Event,
+    KeyEvent,
+    MouseButtonEvent,
+    TextEvent,
+)
 from moka.app.render_session import RenderRequest
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Timestamps
@@ -49,6 +56,7 @@ __all__ = ["Viewer"]
 
 # Panels follow the pointer a frame later, and sizes of text one more.
 _FRAMES_TO_SETTLE = 3
+_MOST_FRAMES_TO_SETTLE = 100
 
 
 class Viewer(App):
@@ -103,6 +111,7 @@ class Viewer(App):
         self.gestures = Gestures(self)
         self.readbacks = Readbacks(self)
         self._settling = 0
+        self._updating = 0.0
 
     # What an App does.
 
@@ -121,7 +130,10 @@ class Viewer(App):
 
     def event(self, event: Event) -> None:
         """Panels first; what they do not want moves the camera."""
-        self._settling = _FRAMES_TO_SETTLE
+        self._settling = max(self._settling, _FRAMES_TO_SETTLE)
+        if isinstance(event, KeyEvent | MouseButtonEvent | TextEvent):
+            # Dear ImGui takes a press and its release in two frames.
+            self._settling = min(self._settling + 1, _MOST_FRAMES_TO_SETTLE)
         self.interface.take(event)
         if isinstance(event, DropEvent):
             for path in event.paths:
@@ -131,6 +143,7 @@ class Viewer(App):
 
     def update(self, time: GameTime) -> None:
         """Take over what the background has done, and move on."""
+        start = perf_counter()
         try:
             self.work.poll()
             if self.measurement is not None:
@@ -147,6 +160,7 @@ class Viewer(App):
         self._settling = max(self._settling - 1, 0)
         if self._goes_on():
             self.request_redraw()
+        self._updating = perf_counter() - start
 
     def draw(self, time: GameTime, commands: CommandList) -> None:
         """The scene, then the panels over it."""
@@ -156,6 +170,7 @@ class Viewer(App):
         self.times.add("wait", self.waited)
         self.draft.note_wait(self.waited)
         places = self.times.begin_frame()
+        self.times.add("update", self._updating)
         with self.times.stage("scene"):
             if places:
                 mark_passes(commands, places[0])

@@ -1,9 +1,10 @@
 """Widgets of the panels: a name, a value, and what a person makes of it."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
-__all__ = ["choice", "slider"]
+__all__ = ["choice", "file_items", "slider"]
 
 
 def choice(imgui: Any, name: str, value: str, values: Sequence[str]) -> str:
@@ -27,3 +28,21 @@ def slider(
     flags = imgui.SliderFlags_.logarithmic if logarithmic else 0
     changed, number = imgui.slider_float(name, value, least, most, text, flags)
     return float(number) if changed else value
+
+
+def file_items(imgui: Any, now: str, files: Sequence[str]) -> str | None:
+    """Files in a list that is open, by their last names; what is chosen.
+
+    The whole path of the one under the pointer is told.
+    """
+    wanted = None
+    if files:
+        imgui.separator_text("opened before")
+    for number, file in enumerate(files):
+        imgui.push_id(number)
+        if imgui.selectable(Path(file).name, file == now)[0]:
+            wanted = file
+        if imgui.is_item_hovered():
+            imgui.set_tooltip(file)
+        imgui.pop_id()
+    return wanted

@@ -522,3 +522,22 @@ def test_numbers_that_mean_nothing_are_told(watch: Watch) -> None:
         person.wait("an answer", lambda: viewer.frame is not None)
 
     watch(story)
+
+
+def test_a_path_is_typed_and_opened(watch: Watch, tmp_path: Path) -> None:
+    """The panel of the model is on top of the column."""
+    other = tmp_path / "other.glb"
+    blue = Material(base_colour_factor=(0.05, 0.1, 1, 1), metallic_factor=0.0)
+    save_model(model_of([(cube(1.0), blue, np.eye(4))]), other)
+
+    def story(person: Person, viewer: Viewer) -> None:
+        person.act("mousemove 250 63")
+        person.wait("the panel", lambda: viewer.interface.wants_pointer)
+        person.act("click 1")
+        person.wait("a field", lambda: viewer.interface.wants_keyboard)
+        person.act(f"type --delay 20 {other}")
+        person.act("key Return")
+        person.wait("it", lambda: viewer.files.model_source == other)
+        assert viewer.preferences.recent_models[0] == str(other)
+
+    watch(story)

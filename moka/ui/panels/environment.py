@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from moka.lighting.environment import BRIGHTEST
 from moka.renderer.settings import BRDFS, DIFFUSE_MODELS, IBL_MODES
 from moka.ui.panels.panel import Panel
-from moka.ui.widgets import choice, slider
+from moka.ui.widgets import choice, file_items, slider
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -95,14 +95,6 @@ def _picked(imgui: Any, now: str, files: list[str]) -> str:
         for name in _BUILT_IN:
             if imgui.selectable(name, name == now)[0]:
                 wanted = name
-        if files:
-            imgui.separator_text("opened before")
-        for number, file in enumerate(files):
-            imgui.push_id(number)
-            if imgui.selectable(Path(file).name, file == now)[0]:
-                wanted = file
-            if imgui.is_item_hovered():
-                imgui.set_tooltip(file)
-            imgui.pop_id()
+        wanted = file_items(imgui, now, files) or wanted
         imgui.end_combo()
     return wanted

@@ -1,9 +1,10 @@
-"""What the file offers: variants of materials and cameras."""
+"""Which file is open, and what it offers: variants and cameras."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moka.ui.panels.panel import Panel
-from moka.ui.widgets import choice
+from moka.ui.widgets import choice, file_items
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -14,21 +15,20 @@ _NO_VARIANT = "as the file has them"
 
 
 class ModelPanel(Panel):
-    """Chooses a variant, and looks through a camera of the file."""
+    """Opens models, chooses a variant, and looks through their cameras."""
 
     title = "Model"
     starts_open = True
 
-    def is_useful(self, viewer: "Viewer") -> bool:
-        """Whether the file offers any."""
-        return viewer.model is not None and bool(
-            viewer.model.model.variants or viewer.model.cameras
-        )
+    def __init__(self) -> None:
+        self._path = ""
 
     def draw(self, imgui: Any, viewer: "Viewer") -> None:
         """The widgets."""
+        self._open(imgui, viewer)
         model = viewer.model
-        assert model is not None
+        if model is None:
+            return
         if model.model.variants:
             shown = model.variant or _NO_VARIANT
             wanted = choice(
@@ -42,3 +42,23 @@ class ModelPanel(Panel):
             if imgui.button(camera.name or f"camera {number}"):
                 viewer.look_through(camera)
             imgui.pop_id()
+
+    def _open(self, imgui: Any, viewer: "Viewer") -> None:
+        now = viewer.files.model_source
+        recent = viewer.preferences.recent_models
+        shown = Path(now).name if isinstance(now, str | Path) else "demo"
+        if imgui.begin_combo("file", shown):
+            if imgui.selectable("demo", now is None)[0]:
+                viewer.open_model(None)
+            wanted = file_items(imgui, str(now), recent)
+            if wanted is not None:
+                viewer.open_model(wanted)
+            imgui.end_combo()
+        entered, self._path = imgui.input_text_with_hint(
+            "path",
+            "open a .gltf or .glb",
+            self._path,
+            imgui.InputTextFlags_.enter_returns_true,
+        )
+        if entered and self._path:
+            viewer.open(Path(self._path).expanduser())
