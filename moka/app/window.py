@@ -39,8 +39,9 @@ class Window:
     """A window of the main thread whose content another thread draws.
 
     ``size`` is in screen coordinates, which differ from pixels on a scaled
-    display. ``debug`` asks for a debug context. Raises ContextError if
-    there is no display, no GLFW, or no OpenGL 3.3.
+    display. ``debug`` asks for a debug context. An EGL context that is
+    current on this thread is let go: GLX cannot share one with it. Raises
+    ContextError if there is no display, no GLFW, or no OpenGL 3.3.
     """
 
     def __init__(
@@ -56,6 +57,9 @@ class Window:
     ) -> None:
         if threading.current_thread() is not threading.main_thread():
             raise ContextError("a window must be made on the main thread")
+        from moka.backend.contexts.egl import release_thread
+
+        release_thread()
         self._glfw = glfw = _start_glfw()
         self._vsync = vsync
         self._debug = debug

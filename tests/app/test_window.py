@@ -350,3 +350,25 @@ def test_frames_follow_one_another_without_any_event(
     run(Busy, frames=40, size=(64, 64), vsync=False, cache=False)
     # A wait for events that do not come is of half a second.
     assert time.perf_counter() - start < 10.0
+
+
+def test_an_egl_context_of_somebody_else_is_no_obstacle(
+    display: str,  # noqa: ARG001
+    render_thread: ThreadPoolExecutor,
+) -> None:
+    """GLX ended the process without a word."""
+    moderngl = pytest.importorskip("moderngl")
+    for is_released in (False, True):
+        try:
+            foreign = moderngl.create_standalone_context(backend="egl")
+        except Exception:
+            pytest.skip("there is no EGL")
+        if is_released:
+            foreign.release()
+        for _ in range(2):
+            with Window("beside", (50, 40), vsync=False) as window:
+                factory = window.context_factory()
+                context = render_thread.submit(factory).result()
+                size = window.framebuffer_size
+                render_thread.submit(paint, context, size).result()
+                render_thread.submit(context.close).result()

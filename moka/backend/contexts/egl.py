@@ -9,6 +9,7 @@ the driver takes tens of milliseconds in which other threads can decode.
 """
 
 import ctypes
+import os
 from ctypes import POINTER, byref, c_char_p, c_int, c_uint, c_void_p
 from functools import cache
 from typing import Any
@@ -18,7 +19,13 @@ from msgspec import Struct
 from moka.backend.contexts.native import NativeContext, bind, load_library
 from moka.core.errors import ContextError
 
-__all__ = ["EglContext", "EglDevice", "list_devices", "open_surfaceless"]
+__all__ = [
+    "EglContext",
+    "EglDevice",
+    "list_devices",
+    "open_surfaceless",
+    "release_thread",
+]
 
 _NONE = 0x3038
 _EXTENSIONS = 0x3055
@@ -48,6 +55,23 @@ _ERRORS = {
     0x300C: "EGL_BAD_PARAMETER",
     0x300E: "EGL_CONTEXT_LOST",
 }
+
+
+def release_thread() -> None:
+    """Let go of the EGL context that is current on this thread, if any is.
+
+    Also of one that somebody else has made, or destroyed while it was
+    current. While a thread has one, GLX does not notice what it makes
+    current there, and ends the process when another thread takes that.
+    """
+    is_loaded = getattr(os, "RTLD_NOLOAD", None)
+    if is_loaded is None:
+        return
+    try:
+        library = ctypes.CDLL("libEGL.so.1", mode=is_loaded)
+    except OSError:
+        return  # Nobody in this process has used it.
+    bind(library, "eglReleaseThread", c_uint)()
 
 
 class _Library:
