@@ -15,42 +15,14 @@ from moka.material.description import (
     defines_of,
 )
 from moka.material.parameters import material_layout
+from moka.renderer.frame_block import FRAME
 
 __all__ = [
-    "FRAME",
     "LightingDescription",
     "Permutation",
     "lights_layout",
     "materials_layout",
 ]
-
-# What the whole frame shares. World space has its origin at the camera, so
-# that positions a million metres from zero keep their detail.
-FRAME = UniformLayout(
-    "Frame",
-    (
-        Parameter("clip_from_world", ParameterType.MAT4),
-        # Towards the viewer from p: xyz - p * w. Perspective is (0, 0, 0, 1).
-        Parameter("eye", ParameterType.VEC4),
-        # Cosine and sine of the environment's rotation about +Y.
-        Parameter("environment_turn", ParameterType.VEC2),
-        Parameter("environment_intensity", ParameterType.FLOAT),
-        # Of the environment's E / pi, with MOKA_IRRADIANCE_SH.
-        Parameter("irradiance_harmonics", ParameterType.VEC3, 9),
-        # The level of the specular cube for roughness 1.
-        Parameter("specular_levels", ParameterType.FLOAT),
-        Parameter("light_count", ParameterType.INT),
-        # Width and height in pixels, and of what is drawn as lines or points.
-        Parameter("picture_size", ParameterType.VEC2),
-        Parameter("line_width", ParameterType.FLOAT),
-        Parameter("point_size", ParameterType.FLOAT),
-        # With MOKA_LOGARITHMIC_DEPTH: View.depth_range.
-        Parameter("depth_range", ParameterType.VEC3),
-        # Of reference lighting: x the first sample of the frame, y how many,
-        # z the number of the batch.
-        Parameter("sample_range", ParameterType.IVEC4),
-    ),
-)
 
 # A uniform block of 16 KiB is what every driver has.
 _BLOCK_BYTES = 16384

@@ -13,7 +13,6 @@ What does not change between frames is prepared once
 cull, key, gather (:mod:`moka.renderer.gather`).
 """
 
-import math
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -32,31 +31,25 @@ from moka.graphics.passes import FullscreenPasses
 from moka.graphics.program_cache import ProgramCache
 from moka.graphics.shader_source import forget_shaders
 from moka.lighting.disk_cache import DiskCache
-from moka.renderer.gather import DrawGatherer
+from moka.renderer.frame_block import FRAME, frame_values
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.light_sources import LightSources, light_capacity
 from moka.renderer.material_pool import MaterialPool
-from moka.renderer.permutation import FRAME, LightingDescription
-from moka.renderer.prepared_scene import (
-    LAYER_BACKGROUND,
-    PreparedScene,
-    SharedBindings,
-)
+from moka.renderer.prepared_scene import LAYER_BACKGROUND, PreparedScene
 from moka.renderer.progressive import Progressive
 from moka.renderer.scene_materials import SceneMaterials
+from moka.renderer.scene_preparation import ScenePreparation
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.sky_map import SkyMap
 from moka.renderer.targets import Targets
 from moka.renderer.view import View, look_through
 from moka.scene.camera import Camera
-from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
 
 if TYPE_CHECKING:
     from moka.model.mesh import Primitive
     from moka.renderer.debug_view import DebugPass
-    from moka.renderer.pose_texture import PoseTexture
     from moka.renderer.surface_values import SurfaceValues, ValueTargets
 
 __all__ = ["Renderer"]
@@ -67,11 +60,6 @@ PASS_DISPLAY = 3
 PASS_VALUES = 4
 PASS_DEBUG = 5
 PASS_READ = 6
-
-# Lines are as wide as this part of the picture's height, points are squares
-# of the other one; a pixel at least.
-_LINE_WIDTH = 1 / 720
-_POINT_SIZE = 1 / 360
 
 
 class Renderer:
@@ -144,10 +132,15 @@ class Renderer:
         self._targets: Targets | None = None
         # What the scene of the last frame has behind it, not drawn there.
         self._sky_behind: Sky | None = None
-        self._prepared: PreparedScene | None = None
-        self._prepared_key: object = None
-        self._gatherer: DrawGatherer
-        self._poses: PoseTexture | None = None
+        self._scene = ScenePreparation(
+            device,
+            self._frame,
+            self._sources,
+            self._programs,
+            self._geometry,
+            self._materials,
+            PASS_SCENE,
+        )
         self._values: SurfaceValues | None = None
         self._debug: DebugPass | None = None
 
@@ -175,7 +168,7 @@ class Renderer:
             return self._programs.reload() + self._passes.reload()
         finally:
             # What is prepared names programs by handles that may be gone.
-            self._prepared_key = None
+            self._scene.forget()
             if self._values is not None:
                 self._values.forget()
 
@@ -213,7 +206,7 @@ class Renderer:
         materials = self._materials.describe(
             scene, camera, self.size, self.settings.textures
         )
-        self._update_pose_texture(scene, materials)
+        self._scene.update_poses(scene, materials)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -221,12 +214,12 @@ class Renderer:
         targets = self._update_targets()
         self._update_maps(scene, materials)
         lights = self._sources.rows(scene, view.position)
-        capacity = light_capacity(len(lights)) if materials.has_lit else 0
-        prepared = self._prepare(
+        prepared = self._scene.update(
             scene,
             materials,
-            capacity,
-            positional=bool(lights["positional"].any()),
+            self.settings,
+            lights,
+            float_target=self._has_float_target,
             logarithmic_depth=view.depth_range is not None,
         )
         visible = self._visible(scene, camera)
@@ -286,7 +279,7 @@ class Renderer:
         materials = self._materials.describe(
             scene, camera, self.size, self.settings.textures
         )
-        self._update_pose_texture(scene, materials)
+        self._scene.update_poses(scene, materials)
         width, height = self.size
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
@@ -300,7 +293,7 @@ class Renderer:
             )
         commands.fill_buffer(
             self._frame,
-            self._frame_values(scene, view, np.empty(0, LIGHT)),
+            self._frame_values(scene, view, 0),
             key=SortKey(PASS_VALUES),
         )
         return self._values.draw(
@@ -312,7 +305,7 @@ class Renderer:
             self.size,
             commands,
             PASS_VALUES,
-            self._poses,
+            self._scene.poses,
         )
 
     def draw_debug_view(
@@ -396,6 +389,10 @@ class Renderer:
         return self.settings.ibl == "reference"
 
     @property
+    def _has_float_target(self) -> bool:
+        return self.settings.float_output or self._accumulates
+
+    @property
     def _current_targets(self) -> Targets:
         if self._targets is None:
             raise DeviceError("renderer: nothing has been drawn to read")
@@ -407,23 +404,6 @@ class Renderer:
         return commands.read_pixels(
             framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
         )
-
-    def _update_pose_texture(
-        self, scene: Scene, materials: SceneMaterials
-    ) -> None:
-        """The texture of what moves within itself, if anything does."""
-        if self._poses is not None:
-            if self._poses.made_for is materials:
-                return
-            self._poses.destroy()
-            self._poses = None
-        poses = scene.drawables.poses
-        if poses is not None:
-            from moka.renderer.pose_texture import PoseTexture
-
-            self._poses = PoseTexture(
-                self.device, poses, scene.drawables.primitives, materials
-            )
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
         is_lit = self.settings.ibl != "off"
@@ -445,68 +425,7 @@ class Renderer:
         if changed:
             self._screen.forget()
             self._sky_map.forget()
-            self._prepared_key = None
-
-    def _prepare(
-        self,
-        scene: Scene,
-        materials: SceneMaterials,
-        capacity: int,
-        *,
-        positional: bool,
-        logarithmic_depth: bool,
-    ) -> PreparedScene:
-        settings = self.settings
-        maps = self._sources.maps
-        is_bare = settings.light_part == "irradiance"
-        lighting = LightingDescription(
-            maps.lights_surfaces and settings.ibl != "off",
-            capacity,
-            settings.brdf,
-            "lambert" if is_bare else settings.diffuse,
-            settings.multiscatter and not is_bare,
-            settings.float_output or self._accumulates,
-            self._sources.harmonics is not None,
-            # Of uniform light split-sum is exact, and there is no such cube.
-            "split-sum"
-            if settings.ibl == "off"
-            or (settings.ibl == "filtered" and maps.radiance is None)
-            else settings.ibl,
-            logarithmic_depth,
-            positional,
-            scene.environment_rotation != 0,
-            settings.light_part,
-        )
-        key = (self._materials.key, lighting)
-        if self._prepared is not None and self._prepared_key == key:
-            return self._prepared
-        if self._prepared is not None:
-            self._prepared.destroy()
-        needs_table = lighting.needs_table and materials.has_lit
-        self._prepared = PreparedScene(
-            self.device,
-            scene.drawables.primitives,
-            materials,
-            lighting,
-            SharedBindings(
-                self._frame,
-                self._sources.buffer(capacity) if capacity else None,
-                maps,
-                self._sources.table(settings.brdf) if needs_table else None,
-                () if self._poses is None else self._poses.bindings,
-            ),
-            self._programs,
-            self._geometry,
-            self._materials.textures,
-        )
-        self._prepared_key = key
-        self._gatherer = DrawGatherer(
-            scene.drawables,
-            self._prepared,
-            PASS_SCENE,
-            None if self._poses is None else self._poses.places,
-        )
-        return self._prepared
+            self._scene.forget()
 
     def _visible(self, scene: Scene, camera: Camera) -> NDArray[np.intp]:
         width, height = self.size
@@ -518,7 +437,7 @@ class Renderer:
     def _update_targets(self) -> Targets:
         settings = self.settings
         samples = min(settings.samples, self.device.info.max_samples)
-        float_output = settings.float_output or self._accumulates
+        float_output = self._has_float_target
         if self._accumulates:
             samples = 1  # Edges are smooth by another point in every frame.
         wanted = (self.size, samples, float_output)
@@ -541,10 +460,12 @@ class Renderer:
     ) -> None:
         is_reversed = self.device.info.clip_control
         capacity = light_capacity(len(lights)) if prepared.is_lit else 0
-        if self._poses is not None:
-            self._poses.update(visible, self._geometry, commands)
+        if self._scene.poses is not None:
+            self._scene.poses.update(visible, self._geometry, commands)
         setup = commands.command_buffer(SortKey(PASS_SCENE))
-        setup.fill_buffer(self._frame, self._frame_values(scene, view, lights))
+        setup.fill_buffer(
+            self._frame, self._frame_values(scene, view, len(lights))
+        )
         if scene.live_materials is not None:
             prepared.update_materials(scene.live_materials, setup)
         if capacity:
@@ -567,7 +488,9 @@ class Renderer:
         )
         commands.use(prepared.handles)
         commands.draws(
-            *self._gatherer.gather(scene.transforms, visible, view, states),
+            *self._scene.gatherer.gather(
+                scene.transforms, visible, view, states
+            ),
             in_order=True,
         )
         self._sky_behind = self._sky(scene, view)
@@ -586,7 +509,7 @@ class Renderer:
     ) -> Hashable:
         """All that radiance depends on: the same while samples add up."""
         return (
-            self._prepared_key,
+            self._scene.key,
             id(scene.environment),
             scene.environment_rotation,
             scene.environment_intensity,
@@ -602,31 +525,19 @@ class Renderer:
         )
 
     def _frame_values(
-        self, scene: Scene, view: View, lights: NDArray[np.void]
+        self, scene: Scene, view: View, light_count: int
     ) -> NDArray[np.void]:
-        rotation = scene.environment_rotation
-        harmonics = self._sources.harmonics
-        return FRAME.pack(
-            {
-                "irradiance_harmonics": (
-                    np.zeros((9, 3)) if harmonics is None else harmonics
-                ),
-                "clip_from_world": view.clip_from_world,
-                "eye": view.eye,
-                "environment_turn": (math.cos(rotation), math.sin(rotation)),
-                "environment_intensity": scene.environment_intensity,
-                "specular_levels": self._sources.maps.specular_levels - 1,
-                "light_count": len(lights),
-                "picture_size": self.size,
-                "line_width": max(1.0, self.size[1] * _LINE_WIDTH),
-                "point_size": max(1.0, self.size[1] * _POINT_SIZE),
-                "depth_range": view.depth_range or (0.0, 0.0, 0.0),
-                "sample_range": (
-                    self._progressive.sample_range
-                    if self._accumulates
-                    else (0, self.settings.ibl_samples, 0, 0)
-                ),
-            }
+        samples = (0, self.settings.ibl_samples, 0, 0)
+        if self._accumulates:
+            samples = self._progressive.sample_range
+        return frame_values(
+            scene,
+            view,
+            self.size,
+            harmonics=self._sources.harmonics,
+            specular_levels=self._sources.maps.specular_levels,
+            light_count=light_count,
+            sample_range=samples,
         )
 
     def _sky(self, scene: Scene, view: View) -> Sky | None:
@@ -643,7 +554,7 @@ class Renderer:
             view,
             rotation=scene.environment_rotation,
             intensity=scene.environment_intensity,
-            float_target=self.settings.float_output or self._accumulates,
+            float_target=self._has_float_target,
             suns=suns,
             height=self.size[1],
             cube=cube,

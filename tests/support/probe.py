@@ -33,12 +33,9 @@ from moka.lighting.brdf_table import TABLE_SAMPLER
 from moka.lighting.environment import Environment
 from moka.lighting.environment_maps import CUBE_SAMPLER
 from moka.material.description import Feature
+from moka.renderer.frame_block import FRAME
 from moka.renderer.light_sources import LightSources, light_capacity
-from moka.renderer.permutation import (
-    FRAME,
-    LightingDescription,
-    lights_layout,
-)
+from moka.renderer.permutation import LightingDescription, lights_layout
 from moka.scene.scene import Scene
 
 __all__ = ["LightingProbe"]
