@@ -23,7 +23,7 @@ from PIL import ImageGrab
 
 import moka
 from moka.app.events import Event, MouseMoveEvent
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.ui.viewer import Viewer
 
 SIZE = (1280, 720)

@@ -5,7 +5,7 @@ import os
 import shlex
 from typing import Any
 
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.renderer.settings import RenderSettings
 
 __all__ = ["command_arguments", "command_text"]

@@ -3,11 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from moka.app.render_session import (
-    RenderRequest,
-    RenderSession,
-    request_of,
-)
+from moka.app.render_request import RenderRequest, request_of
+from moka.app.render_session import RenderSession
 from moka.core.statistics import Statistics
 
 if TYPE_CHECKING:

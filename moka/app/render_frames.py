@@ -7,12 +7,8 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from moka.app.render_session import (
-    PendingImage,
-    RenderRequest,
-    RenderSession,
-    request_of,
-)
+from moka.app.render_request import RenderRequest, request_of
+from moka.app.render_session import PendingImage, RenderSession
 from moka.core.errors import OptionError
 from moka.core.image import Image
 from moka.core.statistics import Statistics

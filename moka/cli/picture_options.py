@@ -8,13 +8,13 @@ from moka.core.errors import OptionError
 from moka.core.option_text import count, name_or_index, number, size
 
 if TYPE_CHECKING:
-    from moka.app.render_session import RenderRequest
+    from moka.app.render_request import RenderRequest
 
 __all__ = ["add_picture_arguments", "picture_request"]
 
 
 def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what :class:`moka.app.render_session.RenderRequest` is made of."""
+    """Add what :class:`moka.app.render_request.RenderRequest` is made of."""
     add = parser.add_argument
     add(
         "model",
@@ -239,7 +239,7 @@ def picture_request(
     ``float_output`` asks for float32 pixels; ``options`` are further fields
     of the request. Raises OptionError for what means nothing together.
     """
-    from moka.app.render_session import RenderRequest
+    from moka.app.render_request import RenderRequest
     from moka.renderer.quality import settings_of_quality
 
     if arguments.environment_intensity < 0:

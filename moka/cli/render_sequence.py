@@ -7,7 +7,7 @@ from pathlib import Path
 
 from moka.app.frame_files import FrameFiles, is_moving, numbers_written
 from moka.app.render_frames import FramesRequest, request_frames
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.core.errors import OptionError
 from moka.core.moving_picture import check_moving_picture
 from moka.core.progress import Progress

@@ -1,5 +1,6 @@
 """A run of commands that stay together, and commands that stand alone."""
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -150,16 +151,16 @@ class CommandBuffer:
         return handle.index
 
 
-class SingleCommands:
+class SingleCommands(ABC):
     """Every command of a :class:`CommandBuffer` as a buffer of its own.
 
     What a list has besides: shorthands for the one command that a caller
     wants at a place of the frame.
     """
 
+    @abstractmethod
     def command_buffer(self, key: SortKey | int | None = None) -> CommandBuffer:
         """A buffer whose commands run together at ``key``'s place."""
-        raise NotImplementedError
 
     def bind_framebuffer(
         self, framebuffer: Handle | None, *, key: SortKey | int | None = None

@@ -14,7 +14,8 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from moka.app.render_session import RenderSession, request_of
+from moka.app.render_request import request_of
+from moka.app.render_session import RenderSession
 from moka.commands.command_list import CommandList
 from moka.core.errors import DeviceError, OptionError
 from moka.core.image import Image

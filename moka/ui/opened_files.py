@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.core.errors import MokaError
 from moka.core.resources import asset_folder, shader_folder
 from moka.lighting.environment import Environment, load_environment

@@ -28,7 +28,7 @@ from moka.app.events import (
     MouseButtonEvent,
     TextEvent,
 )
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Timestamps
 from moka.commands.sort_key import SortKey

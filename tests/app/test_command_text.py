@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from moka.app.command_text import command_arguments, command_text
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.cli.main import _parser
 from moka.cli.picture_options import picture_request
 from moka.renderer.settings import RenderSettings

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import moka
-from moka.app.render_session import RenderSession, request_of
+from moka.app.render_request import request_of
+from moka.app.render_session import RenderSession
 from moka.cli.main import main
 from moka.core.statistics import Statistics
 from moka.lighting.code_digest import code_digest

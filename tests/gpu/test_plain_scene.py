@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from moka.app.render import render_request
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.core.statistics import Statistics
 from moka.material.description import Feature, describe_material
 from moka.model import load_model

@@ -7,7 +7,7 @@ import pytest
 
 import moka
 from moka.app.render import render_request
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.commands.command_list import CommandList
 from moka.core.encoded_image import EncodedImage
 from moka.core.errors import ImageFileError

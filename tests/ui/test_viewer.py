@@ -16,7 +16,7 @@ from PIL import Image as PillowImage
 
 import moka
 from moka.app.events import DropEvent
-from moka.app.render_session import RenderRequest
+from moka.app.render_request import RenderRequest
 from moka.cli.main import main
 from moka.core import resources
 from moka.core.decode import decode_image
