@@ -52,10 +52,18 @@ void main() {
     Surface surface = make_surface(
         base.rgb, packed_values.z, packed_values.y, packed_values.x,
         shading_normal(row), view);
+#ifdef MOKA_SPECULAR
+    cover_with(
+        dielectric_reflectance(row), base.rgb, packed_values.z, surface);
+#endif
 #ifdef MOKA_PART_IRRADIANCE
     // Of a white base without an interface: E / pi.
     surface.diffuse_colour = vec3(1.0);
     surface.f0 = surface.f90 = vec3(0.0);
+#ifdef MOKA_SPECULAR
+    surface.dielectric = vec4(0.0);
+    surface.covering_f0 = vec3(0.0);
+#endif
 #endif
     vec3 light = received_light(surface);
 #if defined(MOKA_PART_DIFFUSE) || defined(MOKA_PART_SPECULAR)

@@ -96,6 +96,12 @@ void main() {
     vec3 f0 = mix(vec3(0.04), base.rgb, packed_values.z);
     float cosine = clamp(dot(shading_normal(row), surface_view()), 0.0, 1.0);
     fresnel = vec4(fresnel_schlick(cosine, f0, vec3(1.0)), 0.0);
+#ifdef MOKA_SPECULAR
+    vec4 dielectric = dielectric_reflectance(row);
+    f0 = mix(dielectric.rgb, base.rgb, packed_values.z);
+    vec3 f90 = vec3(mix(dielectric.a, 1.0, packed_values.z));
+    fresnel = vec4(fresnel_schlick(cosine, f0, f90), 0.0);
+#endif
 #endif
 #ifdef MOKA_VALUES_OVERDRAW
     // Added up by the blending.

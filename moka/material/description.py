@@ -37,6 +37,10 @@ __all__ = [
 ]
 
 
+_SPECULAR_FACTORS = frozenset(
+    ("ior", "specular_factor", "specular_colour_factor")
+)
+_SPECULAR_SLOTS = frozenset(("specular", "specular_colour"))
 _POINTS_AND_LINES = frozenset(
     (
         Topology.POINTS,
@@ -70,6 +74,8 @@ class Feature(IntFlag):
     LINES = auto()
     # The alpha of the normal map says what its levels average.
     NORMAL_VARIANCE = auto()
+    # A dielectric of another reflectance than glTF's 0.04.
+    SPECULAR = auto()
 
 
 # What a morph target adds to a vertex, in texels of four numbers: which
@@ -193,11 +199,18 @@ def describe_material(
             or "metallic_roughness" in slots
         ):
             features |= Feature.DIFFUSE
+    if Feature.DIFFUSE not in features:
+        # Metals have no dielectric interface.
+        slots = {k: v for k, v in slots.items() if k not in _SPECULAR_SLOTS}
     slots = {
         slot: texture
         for slot, texture in slots.items()
         if _uv_attribute(material, slot, texture) in attributes
     }
+    if Feature.DIFFUSE in features and (
+        _has_specular_factors(material) or not _SPECULAR_SLOTS.isdisjoint(slots)
+    ):
+        features |= Feature.SPECULAR
     carriers = _carriers(material, slots) if carries else {}
     if carriers:
         del slots["metallic_roughness"]
@@ -300,6 +313,14 @@ def texture_slots(material: Material) -> dict[str, Texture]:
         "emissive": (
             material.emissive_texture if _can_glow(material) else None
         ),
+        "specular": (
+            material.specular_texture
+            if material.specular_factor or "specular_factor" in animated
+            else None
+        ),
+        "specular_colour": (
+            material.specular_colour_texture if _can_tint(material) else None
+        ),
     }
     return {slot: texture for slot, texture in slots.items() if texture}
 
@@ -343,6 +364,25 @@ def _can_glow(material: Material) -> bool:
     """Whether the emissive factor is, or may become, more than black."""
     return any(material.emissive_factor) or bool(
         material.animated & {"emissive_factor", "emissive_strength"}
+    )
+
+
+def _has_specular_factors(material: Material) -> bool:
+    """Whether the factors alone give, or may give, another than 0.04."""
+    return (
+        material.ior != 1.5
+        or material.specular_factor != 1
+        or any(factor != 1 for factor in material.specular_colour_factor)
+        or not material.animated.isdisjoint(_SPECULAR_FACTORS)
+    )
+
+
+def _can_tint(material: Material) -> bool:
+    """Whether a dielectric reflects, or may reflect, anything head-on."""
+    return not material.animated.isdisjoint(_SPECULAR_FACTORS) or bool(
+        material.ior != 1
+        and material.specular_factor
+        and any(material.specular_colour_factor)
     )
 
 

@@ -53,6 +53,12 @@ class Material(Struct, frozen=True, eq=False):
     animations change of it, such as ``normal_texture.offset``. ``coarser``
     are the levels of detail below this one, ``limits`` the least parts of
     the picture at which it and each of them is drawn (MSFT_lod).
+
+    ``ior``, the index of refraction (0 for a reflectance of 1), is of
+    KHR_materials_ior. Of KHR_materials_specular, the reflectance of a
+    dielectric is multiplied by ``specular_colour_factor``, which may exceed
+    1, head-on, and by ``specular_factor`` at all angles; their textures are
+    sRGB-encoded colour, and data in alpha.
     """
 
     name: str = ""
@@ -62,11 +68,16 @@ class Material(Struct, frozen=True, eq=False):
     normal_scale: float = 1.0
     occlusion_strength: float = 1.0
     emissive_factor: tuple[float, float, float] = (0, 0, 0)
+    ior: float = 1.5
+    specular_factor: float = 1.0
+    specular_colour_factor: tuple[float, float, float] = (1, 1, 1)
     base_colour_texture: Texture | None = None
     metallic_roughness_texture: Texture | None = None
     normal_texture: Texture | None = None
     occlusion_texture: Texture | None = None
     emissive_texture: Texture | None = None
+    specular_texture: Texture | None = None
+    specular_colour_texture: Texture | None = None
     alpha_mode: AlphaMode = AlphaMode.OPAQUE
     alpha_cutoff: float = 0.5
     double_sided: bool = False
@@ -86,6 +97,8 @@ class Material(Struct, frozen=True, eq=False):
                 self.normal_texture,
                 self.occlusion_texture,
                 self.emissive_texture,
+                self.specular_texture,
+                self.specular_colour_texture,
             )
             if texture is not None
         )

@@ -13,7 +13,8 @@ from moka.material.material import Material
 __all__ = ["NUMBERS", "check_numbers"]
 
 #: Fields of :class:`moka.Material` that are in its row on the GPU, and the
-#: least and the greatest value of each of their numbers (glTF 2.0, 5.19).
+#: least and the greatest value of each of their numbers (glTF 2.0, 5.19, and
+#: its extensions).
 NUMBERS = {
     "base_colour_factor": (4, 0.0, 1.0),
     "metallic_factor": (1, 0.0, 1.0),
@@ -22,6 +23,9 @@ NUMBERS = {
     "normal_scale": (1, -np.inf, np.inf),
     "occlusion_strength": (1, 0.0, 1.0),
     "alpha_cutoff": (1, 0.0, np.inf),
+    "ior": (1, 1.0, np.inf),
+    "specular_factor": (1, 0.0, 1.0),
+    "specular_colour_factor": (3, 0.0, np.inf),
 }
 
 # All that a description may ask for.

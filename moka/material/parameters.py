@@ -6,6 +6,7 @@ number on to the fragment shader.
 """
 
 import math
+from enum import IntFlag, auto
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,17 @@ from moka.graphics.uniform_block import (
 )
 from moka.material.material import Material, TextureTransform
 
-__all__ = ["material_layout", "material_values", "uv_matrix"]
+__all__ = ["RowPart", "material_layout", "material_values", "uv_matrix"]
+
+
+class RowPart(IntFlag):
+    """What is in the rows of those materials only that need it."""
+
+    TRANSFORMS = auto()  # of KHR_texture_transform
+    SPECULAR = auto()  # of KHR_materials_ior and KHR_materials_specular
+
+
+_NO_PARTS = RowPart(0)
 
 _SLOTS = (
     "base_colour",
@@ -27,6 +38,7 @@ _SLOTS = (
     "occlusion",
     "emissive",
 )
+_SPECULAR_SLOTS = ("specular", "specular_colour")
 
 _FACTORS = (
     Parameter("base_colour_factor", ParameterType.VEC4),
@@ -37,23 +49,29 @@ _FACTORS = (
     Parameter("normal_scale", ParameterType.FLOAT),
     Parameter("occlusion_strength", ParameterType.FLOAT),
 )
-# The upper two rows of each 2D affine matrix; w is unused.
-_TRANSFORMS = tuple(
-    Parameter(f"{slot}_transform", ParameterType.VEC4, 2) for slot in _SLOTS
+_SPECULAR = (
+    # Before textures, the limit of 1 and the factor.
+    Parameter("dielectric_f0", ParameterType.VEC3),
+    Parameter("specular_factor", ParameterType.FLOAT),
 )
 
 
-def material_layout(rows: int, *, has_transforms: bool) -> UniformLayout:
+def material_layout(rows: int, parts: RowPart = _NO_PARTS) -> UniformLayout:
     """The block ``Materials`` of ``rows`` rows.
 
-    Only materials with KHR_texture_transform pay for its matrices.
+    Only materials that have an extension pay for its ``parts``.
     """
-    transforms = _TRANSFORMS if has_transforms else ()
-    return UniformLayout("Materials", (*_FACTORS, *transforms), rows)
+    # The upper two rows of each 2D affine matrix; w is unused.
+    transforms = (
+        Parameter(f"{slot}_transform", ParameterType.VEC4, 2)
+        for slot in _transformed_slots(parts)
+    )
+    specular = _SPECULAR if RowPart.SPECULAR in parts else ()
+    return UniformLayout("Materials", (*_FACTORS, *specular, *transforms), rows)
 
 
 def material_values(
-    material: Material, *, has_transforms: bool
+    material: Material, parts: RowPart = _NO_PARTS
 ) -> dict[str, Any]:
     """The values of one row, by parameter name."""
     values: dict[str, Any] = {
@@ -65,14 +83,25 @@ def material_values(
         "normal_scale": material.normal_scale,
         "occlusion_strength": material.occlusion_strength,
     }
-    if has_transforms:
-        for slot in _SLOTS:
-            texture = getattr(material, f"{slot}_texture")
-            transform = texture.transform if texture else None
-            matrix = np.zeros((2, 4))
-            matrix[:, :3] = uv_matrix(transform or TextureTransform())
-            values[f"{slot}_transform"] = matrix
+    if RowPart.SPECULAR in parts:
+        f0 = ((material.ior - 1.0) / (material.ior + 1.0)) ** 2
+        values["dielectric_f0"] = tuple(
+            f0 * factor for factor in material.specular_colour_factor
+        )
+        values["specular_factor"] = material.specular_factor
+    for slot in _transformed_slots(parts):
+        texture = getattr(material, f"{slot}_texture")
+        transform = texture.transform if texture else None
+        matrix = np.zeros((2, 4))
+        matrix[:, :3] = uv_matrix(transform or TextureTransform())
+        values[f"{slot}_transform"] = matrix
     return values
+
+
+def _transformed_slots(parts: RowPart) -> tuple[str, ...]:
+    if RowPart.TRANSFORMS not in parts:
+        return ()
+    return (*_SLOTS, *_SPECULAR_SLOTS) if RowPart.SPECULAR in parts else _SLOTS
 
 
 def uv_matrix(transform: TextureTransform) -> NDArray[np.float64]:

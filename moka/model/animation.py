@@ -53,6 +53,9 @@ PROPERTIES: dict[Property, int] = {
     ("material", "emissive_factor"): 3,
     ("material", "emissive_strength"): 1,
     ("material", "alpha_cutoff"): 1,
+    ("material", "ior"): 1,
+    ("material", "specular_factor"): 1,
+    ("material", "specular_colour_factor"): 3,
     **{
         ("material", f"{texture}.{part}"): width
         for texture in _TEXTURES

@@ -40,6 +40,11 @@ _MATERIALS = {
     "extensions/KHR_materials_emissive_strength/emissiveStrength": (
         "emissive_strength"
     ),
+    "extensions/KHR_materials_ior/ior": "ior",
+    "extensions/KHR_materials_specular/specularFactor": "specular_factor",
+    "extensions/KHR_materials_specular/specularColorFactor": (
+        "specular_colour_factor"
+    ),
     **{
         f"{texture}/{_TRANSFORM}/{part}": f"{name}.{part}"
         for texture, name in _TEXTURES.items()

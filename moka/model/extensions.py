@@ -14,6 +14,8 @@ SUPPORTED_EXTENSIONS: dict[str, str] = {
     "KHR_draco_mesh_compression": "triangles compressed by Draco",
     "KHR_lights_punctual": "directional, point and spot lights",
     "KHR_materials_emissive_strength": "emission beyond 1",
+    "KHR_materials_ior": "dielectrics of any index of refraction",
+    "KHR_materials_specular": "how much dielectrics reflect, and its colour",
     "KHR_materials_unlit": "materials of constant radiance",
     "KHR_materials_variants": "other materials by the name of a variant",
     "KHR_mesh_quantization": "vertex attributes of 8 and 16 bits",

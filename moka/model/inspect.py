@@ -26,6 +26,8 @@ _TEXTURES = {
     "normal": "normal_texture",
     "occlusion": "occlusion_texture",
     "emissive": "emissive_texture",
+    "specular": "specular_texture",
+    "specular colour": "specular_colour_texture",
 }
 
 _LINES = (Topology.LINES, Topology.LINE_LOOP, Topology.LINE_STRIP)
@@ -208,6 +210,9 @@ def _material(material: Material) -> dict[str, Any]:
         "alpha_mode": material.alpha_mode.value,
         "double_sided": material.double_sided,
         "unlit": material.unlit,
+        "ior": material.ior,
+        "specular": material.specular_factor,
+        "specular_colour": list(material.specular_colour_factor),
         "textures": [
             use
             for use, name in _TEXTURES.items()
@@ -314,6 +319,15 @@ def _material_line(material: dict[str, Any]) -> str:
     words = [material["alpha_mode"].lower()]
     words += ["double-sided"] if material["double_sided"] else []
     words += ["unlit"] if material["unlit"] else []
+    if material["ior"] != 1.5:
+        words.append(f"IOR {material['ior']:g}")
+    colour = material["specular_colour"]
+    if material["specular"] != 1:
+        words.append(f"specular {material['specular']:g}")
+    if any(factor != 1 for factor in colour):
+        words.append(
+            f"specular colour {' '.join(f'{factor:g}' for factor in colour)}"
+        )
     return f"{_name(material)}: {', '.join(words + material['textures'])}"
 
 

@@ -1,7 +1,8 @@
 """From the materials of a glTF document to moka's.
 
 Sources: glTF 2.0 specification, section 3.9 (materials),
-KHR_texture_transform, KHR_materials_unlit, KHR_materials_emissive_strength.
+KHR_texture_transform, KHR_materials_unlit, KHR_materials_emissive_strength,
+KHR_materials_ior, KHR_materials_specular.
 """
 
 from typing import Annotated, Any
@@ -38,10 +39,24 @@ class _EmissiveStrength(msgspec.Struct, rename="camel"):
     emissive_strength: Annotated[float, msgspec.Meta(ge=0)] = 1.0
 
 
+class _Ior(msgspec.Struct):
+    ior: float = 1.5
+
+
+_Positive = Annotated[float, msgspec.Meta(ge=0)]
+
+
+class _Specular(msgspec.Struct, rename="camel"):
+    specular_factor: _Positive = 1.0
+    specular_texture: schema.TextureInfo | None = None
+    specular_color_factor: tuple[_Positive, _Positive, _Positive] = (1, 1, 1)
+    specular_color_texture: schema.TextureInfo | None = None
+
+
 def read_materials(source: GltfSource) -> list[Material]:
     """All materials, in the order of the file.
 
-    Base colour, metalness and roughness are clamped to 0..1, where the
+    Base colour, metalness and others are clamped to 0..1, where the
     specification keeps them, because a lobe outside of it would make energy.
     Raises ModelError naming the JSON path of what is wrong.
     """
@@ -111,6 +126,14 @@ def _read_material(
     normal = material.normal_texture
     occlusion = material.occlusion_texture
     (red, green, blue), strength = _emission(source, path, material)
+    refraction = extension("KHR_materials_ior", _Ior) or _Ior()
+    # 0 is the extension's word for a reflectance of 1 at all angles.
+    if refraction.ior < 1 and refraction.ior != 0:
+        raise source.error(
+            f"{path}.extensions.KHR_materials_ior.ior",
+            f"is {refraction.ior:g}; it is 0, or 1 and more",
+        )
+    specular = extension("KHR_materials_specular", _Specular) or _Specular()
     return Material(
         name=material.name,
         base_colour_factor=_clamped_colour(pbr.base_color_factor),
@@ -135,6 +158,17 @@ def _read_material(
         normal_texture=texture("normalTexture", normal),
         occlusion_texture=texture("occlusionTexture", occlusion),
         emissive_texture=texture("emissiveTexture", material.emissive_texture),
+        ior=refraction.ior,
+        specular_factor=_clamp(specular.specular_factor),
+        specular_colour_factor=specular.specular_color_factor,
+        specular_texture=texture(
+            "extensions.KHR_materials_specular.specularTexture",
+            specular.specular_texture,
+        ),
+        specular_colour_texture=texture(
+            "extensions.KHR_materials_specular.specularColorTexture",
+            specular.specular_color_texture,
+        ),
         alpha_mode=AlphaMode(material.alpha_mode),
         alpha_cutoff=material.alpha_cutoff,
         double_sided=material.double_sided,

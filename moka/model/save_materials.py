@@ -23,6 +23,7 @@ __all__ = ["MaterialWriter"]
 _WRAP_CODES = {wrap: code for code, wrap in WRAPS.items()}
 _MAGNIFY_CODES = {magnify: code for code, magnify in MAGNIFY.items()}
 _MINIFY_CODES = {minify: code for code, minify in MINIFY.items()}
+_DEFAULT = Material()
 
 
 class MaterialWriter:
@@ -61,6 +62,11 @@ class MaterialWriter:
             }
         if material.unlit:
             extensions["KHR_materials_unlit"] = {}
+        if material.ior != _DEFAULT.ior:
+            extensions["KHR_materials_ior"] = {"ior": material.ior}
+        specular = self._specular(material)
+        if specular:
+            extensions["KHR_materials_specular"] = specular
         self.extensions.update(extensions)
         masked = material.alpha_mode is AlphaMode.MASK
         return gltf.Material(
@@ -97,6 +103,27 @@ class MaterialWriter:
             alphaCutoff=material.alpha_cutoff if masked else None,
             doubleSided=material.double_sided,
         )
+
+    def _specular(self, material: Material) -> dict[str, Any]:
+        """What KHR_materials_specular says where it is not the default."""
+        import pygltflib
+
+        result: dict[str, Any] = {}
+        if material.specular_factor != _DEFAULT.specular_factor:
+            result["specularFactor"] = material.specular_factor
+        colour = material.specular_colour_factor
+        if tuple(colour) != _DEFAULT.specular_colour_factor:
+            result["specularColorFactor"] = list(colour)
+        for name, texture in (
+            ("specularTexture", material.specular_texture),
+            ("specularColorTexture", material.specular_colour_texture),
+        ):
+            info = self._info(pygltflib.TextureInfo, texture)
+            if info is not None:
+                result[name] = {
+                    key: value for key, value in vars(info).items() if value
+                } | {"index": info.index}
+        return result
 
     def _info(
         self, type_: Any, texture: Texture | None, **properties: float

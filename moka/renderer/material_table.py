@@ -1,6 +1,6 @@
 """The rows of all materials on the GPU, in pages of one uniform block.
 
-Materials with texture transforms have longer rows and pages of their own.
+Materials with more parts have longer rows and pages of their own.
 """
 
 from collections.abc import Collection, Hashable, Iterable, Iterator
@@ -13,7 +13,7 @@ from moka.commands.descriptors import BufferDescriptor, BufferUsage
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.material.material import Material
-from moka.material.parameters import material_values
+from moka.material.parameters import RowPart, material_values
 from moka.renderer.permutation import materials_layout
 
 __all__ = ["MaterialPlace", "MaterialTable"]
@@ -32,28 +32,25 @@ class MaterialTable:
     def __init__(
         self,
         device: GraphicsDevice,
-        materials: Collection[tuple[Material, bool]],
+        materials: Collection[tuple[Material, RowPart]],
     ) -> None:
-        """Place each material, with transforms or not, in the GPU's pages."""
+        """Place each material, with parts of rows, in the GPU's pages."""
         self._device = device
         self._places: dict[Hashable, MaterialPlace] = {}
         self.pages: list[Handle] = []
         self._rows: dict[Handle, NDArray[np.void]] = {}
-        for has_transforms in (False, True):
+        self._parts = sorted({parts for _, parts in materials})
+        for parts in self._parts:
             members = list(
                 dict.fromkeys(
-                    material
-                    for material, transforms in materials
-                    if transforms == has_transforms
+                    material for material, its in materials if its == parts
                 )
             )
-            self._write(members, has_transforms=has_transforms)
+            self._write(members, parts)
 
-    def place(
-        self, material: Material, *, has_transforms: bool
-    ) -> MaterialPlace:
+    def place(self, material: Material, parts: RowPart) -> MaterialPlace:
         """Where ``material`` lies."""
-        return self._places[material, has_transforms]
+        return self._places[material, parts]
 
     def update(
         self, changes: Iterable[tuple[Material, Material]]
@@ -64,14 +61,14 @@ class MaterialTable:
         """
         spans: dict[Handle, tuple[int, int]] = {}
         for material, now in changes:
-            for has_transforms in (False, True):
-                place = self._places.get((material, has_transforms))
+            for parts in self._parts:
+                place = self._places.get((material, parts))
                 if place is None:
                     continue
                 row = place.row
-                materials_layout(has_transforms=has_transforms).fill(
+                materials_layout(parts).fill(
                     self._rows[place.page][row : row + 1],
-                    material_values(now, has_transforms=has_transforms),
+                    material_values(now, parts),
                 )
                 first, last = spans.get(place.page, (row, row))
                 spans[place.page] = min(first, row), max(last, row)
@@ -85,17 +82,14 @@ class MaterialTable:
         self.pages.clear()
         self._rows.clear()
 
-    def _write(
-        self, materials: list[Material], *, has_transforms: bool
-    ) -> None:
-        layout = materials_layout(has_transforms=has_transforms)
+    def _write(self, materials: list[Material], parts: RowPart) -> None:
+        layout = materials_layout(parts)
         for start in range(0, len(materials), layout.rows):
             members = materials[start : start + layout.rows]
             rows = np.zeros(layout.rows, layout.dtype)
             for index, material in enumerate(members):
                 layout.fill(
-                    rows[index : index + 1],
-                    material_values(material, has_transforms=has_transforms),
+                    rows[index : index + 1], material_values(material, parts)
                 )
             is_live = any(material.animated for material in members)
             page = self._device.create_buffer(
@@ -110,6 +104,4 @@ class MaterialTable:
             self.pages.append(page)
             self._rows[page] = rows
             for index, material in enumerate(members):
-                self._places[material, has_transforms] = MaterialPlace(
-                    page, index
-                )
+                self._places[material, parts] = MaterialPlace(page, index)

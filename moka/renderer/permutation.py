@@ -14,7 +14,7 @@ from moka.material.description import (
     MaterialDescription,
     defines_of,
 )
-from moka.material.parameters import material_layout
+from moka.material.parameters import RowPart, material_layout
 from moka.renderer.frame_block import FRAME
 
 __all__ = [
@@ -47,12 +47,10 @@ def lights_layout(capacity: int) -> UniformLayout:
     )
 
 
-def materials_layout(*, has_transforms: bool) -> UniformLayout:
+def materials_layout(parts: RowPart) -> UniformLayout:
     """A page of the material table: as many rows as a block can hold."""
-    row = material_layout(1, has_transforms=has_transforms)
-    return material_layout(
-        _BLOCK_BYTES // row.size, has_transforms=has_transforms
-    )
+    row = material_layout(1, parts)
+    return material_layout(_BLOCK_BYTES // row.size, parts)
 
 
 class LightingDescription(Struct, frozen=True):
@@ -141,9 +139,14 @@ class Permutation(Struct, frozen=True):
     lighting: LightingDescription
 
     @property
-    def has_transforms(self) -> bool:
-        """Whether its material rows carry texture transforms."""
-        return any(use.has_transform for use in self.material.textures)
+    def row_parts(self) -> RowPart:
+        """What its material rows hold beyond what all do."""
+        parts = RowPart(0)
+        if any(use.has_transform for use in self.material.textures):
+            parts |= RowPart.TRANSFORMS
+        if Feature.SPECULAR in self.material.features:
+            parts |= RowPart.SPECULAR
+        return parts
 
     def program(self) -> ProgramDescriptor:
         """The sources that compile it."""
@@ -153,7 +156,7 @@ class Permutation(Struct, frozen=True):
             **self.lighting.defines(features),
         }
         blocks = FRAME.glsl
-        blocks += materials_layout(has_transforms=self.has_transforms).glsl
+        blocks += materials_layout(self.row_parts).glsl
         if "MOKA_PUNCTUAL_LIGHTS" in defines:
             blocks += lights_layout(self.lighting.light_capacity).glsl
         names = " ".join(name.removeprefix("MOKA_") for name in defines)

@@ -120,7 +120,7 @@ class PreparedScene:
         self._table = MaterialTable(
             device,
             [
-                (material, permutation.has_transforms)
+                (material, permutation.row_parts)
                 for material, permutation in zip(
                     materials.materials, permutations, strict=True
                 )
@@ -132,9 +132,7 @@ class PreparedScene:
         is_reversed = device.info.clip_control
         for index, permutation in enumerate(permutations):
             material = materials.materials[index]
-            place = self._table.place(
-                material, has_transforms=permutation.has_transforms
-            )
+            place = self._table.place(material, permutation.row_parts)
             group = self._bind_group(
                 permutation,
                 materials.requests[index],

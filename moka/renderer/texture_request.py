@@ -15,7 +15,7 @@ __all__ = [
     "texture_request",
 ]
 
-_COLOUR_SLOTS = frozenset({"base_colour", "emissive"})
+_COLOUR_SLOTS = frozenset({"base_colour", "emissive", "specular_colour"})
 
 
 class Graft(Struct, frozen=True):

@@ -10,12 +10,14 @@ from moka.material.material import Material, TextureTransform
 __all__ = ["material_value", "with_values"]
 
 # What the specification keeps between 0 and 1; splines may leave that.
+_POSITIVE = frozenset(("ior", "specular_colour_factor"))
 _FRACTIONS = frozenset(
     (
         "base_colour_factor",
         "metallic_factor",
         "roughness_factor",
         "occlusion_strength",
+        "specular_factor",
     )
 )
 
@@ -50,6 +52,8 @@ def with_values(material: Material, values: Mapping[str, Any]) -> Material:
                 )
         elif name in _FRACTIONS:
             changes[name] = _clamped(value, 1.0)
+        elif name in _POSITIVE:
+            changes[name] = _clamped(value, float("inf"))
         elif name == "emissive_factor":
             strength = values.get("emissive_strength", 1.0)
             changes[name] = _clamped(

@@ -22,6 +22,10 @@ struct Surface {
     vec3 view;   // towards the viewer
     vec2 table;  // of the BRDF table for this view and roughness
     float spread;  // of mirrored views over the pixel, see mirrored_spread
+#ifdef MOKA_SPECULAR
+    vec4 dielectric;  // its f0, and its f90 in a
+    vec3 covering_f0;  // f0, the dielectric's grey: see cover_with
+#endif
 };
 
 #ifdef MOKA_BRDF_TABLE
@@ -52,15 +56,39 @@ Surface make_surface(
     return surface;
 }
 
+#ifdef MOKA_SPECULAR
+// Give the dielectric, which is mixed with a metal, another interface than
+// that of DIELECTRIC_F0: f0, and f90 in a. KHR_materials_specular lets the
+// greatest channel of it decide what reaches the base in all of them, so that
+// a coloured interface does not tint the base with its complement.
+void cover_with(
+    vec4 dielectric, vec3 base_colour, float metalness, inout Surface surface
+) {
+    float most = max(max(dielectric.r, dielectric.g), dielectric.b);
+    surface.dielectric = dielectric;
+    surface.f0 = mix(dielectric.rgb, base_colour, metalness);
+    surface.covering_f0 = mix(vec3(most), base_colour, metalness);
+    surface.f90 = vec3(mix(dielectric.a, 1.0, metalness));
+}
+#endif
+
 // The part of an environment's light that reaches the diffuse base. With
 // compensation it is what a dielectric's interface lets through: glTF 2.0,
 // B.2.4, mixes a dielectric and a metal by metalness. Without, it is the mean
 // of the 1 - F(v.h), of the mixed F0, that B.3.5 has and lights get.
 vec3 base_share(Surface surface, float n_dot_v) {
-#ifdef MOKA_MULTISCATTER
+#if defined(MOKA_MULTISCATTER) && defined(MOKA_SPECULAR)
+    vec3 f0 = surface.dielectric.rgb;
+    return vec3(diffuse_share(
+        specular_albedo(f0, vec3(surface.dielectric.a), surface.table)
+        * multiscatter_scale(f0, surface.table)));
+#elif defined(MOKA_MULTISCATTER)
     return vec3(diffuse_share(
         specular_albedo(DIELECTRIC_F0, surface.f90, surface.table)
         * multiscatter_scale(DIELECTRIC_F0, surface.table)));
+#elif defined(MOKA_SPECULAR)
+    return 1.0
+        - mix(surface.covering_f0, surface.f90, mean_fresnel_power(n_dot_v));
 #else
     return 1.0
         - mix(surface.f0, surface.f90, mean_fresnel_power(n_dot_v));
@@ -234,6 +262,9 @@ vec3 reflected_light(
     vec3 fresnel = fresnel_schlick(angles.v_dot_h, surface.f0, surface.f90);
 #ifdef MOKA_MULTISCATTER
     vec3 share = base;
+#elif defined(MOKA_SPECULAR)
+    vec3 share = 1.0 - fresnel_schlick(
+        angles.v_dot_h, surface.covering_f0, surface.f90);
 #else
     vec3 share = 1.0 - fresnel;
 #endif

@@ -37,6 +37,12 @@ uniform sampler2D occlusion_texture;
 #ifdef MOKA_EMISSIVE_TEXTURE
 uniform sampler2D emissive_texture;
 #endif
+#ifdef MOKA_SPECULAR_TEXTURE
+uniform sampler2D specular_texture;
+#endif
+#ifdef MOKA_SPECULAR_COLOUR_TEXTURE
+uniform sampler2D specular_colour_texture;
+#endif
 
 MaterialsRow material_row() {
     return materials[surface_material];
@@ -103,3 +109,27 @@ vec3 emission(MaterialsRow row) {
 #endif
     return radiance;
 }
+
+#ifdef MOKA_SPECULAR
+// What a dielectric reflects head-on, rgb, and at grazing, a:
+// KHR_materials_specular, with the F0 of KHR_materials_ior in the row.
+vec4 dielectric_reflectance(MaterialsRow row) {
+    vec4 reflectance = vec4(row.dielectric_f0, row.specular_factor);
+#ifdef MOKA_SPECULAR_COLOUR_TEXTURE
+    vec2 colour_uv = UV_OF_SET(MOKA_SPECULAR_COLOUR_UV);
+#ifdef MOKA_SPECULAR_COLOUR_TRANSFORM
+    colour_uv = transformed(colour_uv, row.specular_colour_transform);
+#endif
+    reflectance.rgb *= texture(specular_colour_texture, colour_uv).rgb;
+#endif
+#ifdef MOKA_SPECULAR_TEXTURE
+    vec2 uv = UV_OF_SET(MOKA_SPECULAR_UV);
+#ifdef MOKA_SPECULAR_TRANSFORM
+    uv = transformed(uv, row.specular_transform);
+#endif
+    reflectance.a *= texture(specular_texture, uv).a;
+#endif
+    reflectance.rgb = min(reflectance.rgb, 1.0) * reflectance.a;
+    return reflectance;
+}
+#endif

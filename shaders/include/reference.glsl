@@ -90,6 +90,9 @@ vec3 reflect_light(
     if (s.has_base) {
 #ifdef MOKA_MULTISCATTER
         vec3 share = s.base;
+#elif defined(MOKA_SPECULAR)
+        vec3 share = 1.0 - fresnel_schlick(
+            angles.v_dot_h, surface.covering_f0, surface.f90);
 #else
         vec3 share = 1.0 - fresnel;
 #endif

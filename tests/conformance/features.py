@@ -4,6 +4,7 @@ from tests.conformance.animations import ANIMATIONS
 from tests.conformance.case import Case
 from tests.conformance.characters import CHARACTERS
 from tests.conformance.compressed import COMPRESSED
+from tests.conformance.dielectrics import DIELECTRICS
 from tests.conformance.geometry import GEOMETRY
 from tests.conformance.lights import LIGHTS
 from tests.conformance.materials import MATERIALS
@@ -15,7 +16,7 @@ __all__ = ["FEATURES"]
 
 FEATURES: dict[str, list[Case]] = {
     "Geometry and nodes": GEOMETRY,
-    "Materials": MATERIALS,
+    "Materials": [*MATERIALS, *DIELECTRICS],
     "Textures": [*TEXTURES, *TEXTURE_USE],
     "Lamps and cameras": LIGHTS,
     "Animations": ANIMATIONS,

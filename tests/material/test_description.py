@@ -215,3 +215,51 @@ def test_defines_are_named_and_follow_the_description(
     assert ("MOKA_BASE_COLOUR_TEXTURE" in defines) == has_uv
     assert ("MOKA_BASE_COLOUR_TRANSFORM" in defines) == (has_uv and moved)
     assert defines.get("MOKA_BASE_COLOUR_UV", uv_set) == uv_set
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"ior": 1.45},
+        {"specular_factor": 0.0},
+        {"specular_colour_factor": (1.0, 1.0, 0.5)},
+        {"specular_texture": Texture(IMAGE)},
+        {"specular_colour_texture": Texture(IMAGE)},
+        {"animated": frozenset({"ior"})},
+    ],
+)
+def test_only_a_dielectric_that_is_not_the_default_has_its_own_shader(
+    fields: dict[str, Any],
+) -> None:
+    default = describe(metallic_factor=0.5)
+    assert Feature.SPECULAR not in default.features
+    changed = describe(metallic_factor=0.5, **fields)
+    assert Feature.SPECULAR in changed.features
+    assert defines_of(changed)["MOKA_SPECULAR"] == 1
+    # What has no dielectric interface does not ask for it.
+    assert describe(**fields) == describe()
+    assert describe(unlit=True, **fields) == describe(unlit=True)
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"specular_factor": 0.0},
+        {"specular_colour_factor": (0, 0, 0)},
+        {"ior": 1.0},
+    ],
+)
+def test_a_specular_colour_of_nothing_is_not_sampled(
+    fields: dict[str, Any],
+) -> None:
+    description = describe(
+        metallic_factor=0.0, specular_colour_texture=Texture(IMAGE), **fields
+    )
+    assert description.textures == ()
+    moving = describe(
+        metallic_factor=0.0,
+        specular_colour_texture=Texture(IMAGE),
+        animated=frozenset(fields),
+        **fields,
+    )
+    assert [use.slot for use in moving.textures] == ["specular_colour"]

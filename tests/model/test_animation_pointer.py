@@ -104,6 +104,25 @@ def model_of(pointer: str, width: int) -> Model:
             "material",
             "base_colour_texture.rotation",
         ),
+        (
+            "/materials/0/extensions/KHR_materials_ior/ior",
+            1,
+            "material",
+            "ior",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_specular/specularFactor",
+            1,
+            "material",
+            "specular_factor",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_specular/"
+            "specularColorFactor",
+            3,
+            "material",
+            "specular_colour_factor",
+        ),
         ("/cameras/0/perspective/yfov", 1, "camera", "yfov"),
         ("/cameras/0/perspective/znear", 1, "camera", "near"),
         ("/cameras/1/orthographic/ymag", 1, "camera", "ymag"),

@@ -354,3 +354,58 @@ def test_coarser_levels_are_those_that_animations_move() -> None:
     assert model.materials[fine].coarser == (model.materials[coarse],)
     (primitive,) = model.meshes[0].primitives
     assert primitive.material is model.materials[fine]
+
+
+def test_reads_what_a_dielectric_reflects() -> None:
+    (material,) = load(
+        {
+            "extensions": {
+                "KHR_materials_ior": {"ior": 0},
+                "KHR_materials_specular": {
+                    "specularFactor": 0.25,
+                    "specularColorFactor": [0.5, 1, 3],
+                    "specularTexture": {"index": 0, "texCoord": 1},
+                    "specularColorTexture": {
+                        "index": 1,
+                        "extensions": {
+                            "KHR_texture_transform": {"offset": [0.5, 0]}
+                        },
+                    },
+                },
+            }
+        }
+    )
+    assert material.ior == 0
+    assert material.specular_factor == 0.25
+    assert material.specular_colour_factor == (0.5, 1, 3)
+    assert material.specular_texture is not None
+    assert material.specular_texture.uv_set == 1
+    colour = material.specular_colour_texture
+    assert colour is not None
+    assert colour.transform == TextureTransform((0.5, 0))
+    assert material.textures == (material.specular_texture, colour)
+
+
+@pytest.mark.parametrize(
+    ("extension", "content", "path"),
+    [
+        ("ior", {"ior": 0.9}, "ior: is 0.9; it is 0, or 1 and more"),
+        ("ior", {"ior": -1}, "ior: is -1; it is 0, or 1 and more"),
+        ("ior", {"ior": "glass"}, "ior: "),
+        ("specular", {"specularFactor": -0.5}, "specularFactor: "),
+        (
+            "specular",
+            {"specularColorFactor": [1, -1, 1]},
+            "specularColorFactor[1]: ",
+        ),
+        ("specular", {"specularTexture": {"index": 9}}, "specularTexture"),
+    ],
+)
+def test_an_impossible_dielectric_is_an_error(
+    extension: str, content: dict[str, Any], path: str
+) -> None:
+    name = f"KHR_materials_{extension}"
+    with pytest.raises(ModelError) as raised:
+        load({"extensions": {name: content}})
+    place = f"<bytes>: materials[0].extensions.{name}.{path}"
+    assert str(raised.value).startswith(place)

@@ -64,6 +64,13 @@ def rich_model(folder: Path) -> Model:
         normal_scale=2.0,
         occlusion_strength=0.5,
         emissive_factor=(1.0, 4.0, 0.0),
+        ior=1.25,
+        specular_factor=0.5,
+        specular_colour_factor=(0.5, 2.0, 1.0),
+        specular_texture=Texture(image, SAMPLER, uv_set=1),
+        specular_colour_texture=Texture(
+            image, transform=TextureTransform((0.5, 0.25), 1.5, (2.0, 3.0))
+        ),
         base_colour_texture=Texture(image, SAMPLER),
         metallic_roughness_texture=Texture(image, uv_set=1),
         normal_texture=Texture(
@@ -112,6 +119,8 @@ def test_everything_comes_back(tmp_path: Path, suffix: str) -> None:
     assert again.extensions == (
         "KHR_lights_punctual",
         "KHR_materials_emissive_strength",
+        "KHR_materials_ior",
+        "KHR_materials_specular",
         "KHR_materials_unlit",
         "KHR_texture_transform",
     )
@@ -138,7 +147,10 @@ def test_everything_comes_back(tmp_path: Path, suffix: str) -> None:
     for name in Material.__slots__:
         if not name.endswith("_texture"):
             assert getattr(rich, name) == getattr(wanted, name), name
-    for name in ("base_colour", "metallic_roughness", "normal", "occlusion"):
+    for name in (
+        *("base_colour", "metallic_roughness", "normal", "occlusion"),
+        *("specular", "specular_colour"),
+    ):
         one = getattr(rich, f"{name}_texture")
         two = getattr(wanted, f"{name}_texture")
         assert bytes(one.image.read()) == two.image.read()

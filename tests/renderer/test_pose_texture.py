@@ -26,6 +26,7 @@ from moka.renderer.settings import RenderSettings
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
 from tests.support.characters import Character
+from tests.support.glsl import preprocessed
 
 WORDS = re.compile(r"\b(joint|skin|morph|pose|target)", re.IGNORECASE)
 
@@ -142,44 +143,6 @@ def sources(**deforms: object) -> ProgramDescriptor:
         ),
         LightingDescription(True, 2, "gltf", "lambert", True, False),
     ).program()
-
-
-def preprocessed(text: str) -> str:
-    """What a compiler sees: conditions resolved, comments gone."""
-    names = dict(re.findall(r"#define (\w+) ?(.*)", text))
-    kept, stack = [], [True]
-    for line in text.splitlines():
-        word = line.strip().split("//")[0].strip()
-        match = re.match(r"#\s*(ifdef|ifndef|if|elif|else|endif)\b(.*)", word)
-        if match is None:
-            if all(stack) and word and not word.startswith("#"):
-                kept.append(word)
-            continue
-        kind, condition = match[1], match[2].strip()
-        if kind in ("ifdef", "ifndef"):
-            stack.append((condition in names) == (kind == "ifdef"))
-        elif kind == "if":
-            stack.append(holds(condition, names))
-        elif kind in ("elif", "else"):
-            # Good enough for files that never chain what overlaps.
-            before = stack.pop()
-            stack.append(
-                not before and (kind == "else" or holds(condition, names))
-            )
-        else:
-            stack.pop()
-    return "\n".join(kept)
-
-
-def holds(condition: str, names: dict[str, str]) -> bool:
-    text = re.sub(
-        r"defined\s*\(?\s*(\w+)\s*\)?",
-        lambda match: str(match[1] in names),
-        condition,
-    )
-    text = re.sub(r"\bMOKA_\w+", lambda match: names.get(match[0]) or "0", text)
-    text = text.replace("||", " or ").replace("&&", " and ")
-    return bool(eval(text.replace("!", " not "), {"__builtins__": {}}))
 
 
 def test_a_plain_shader_has_no_word_of_poses() -> None:

@@ -6,6 +6,7 @@ pixels is the noise.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,12 +52,13 @@ def sunny(height: int = 32, sun: float = 3e3) -> NDArray[np.float32]:
 
 def draw_patches(
     device: GraphicsDevice,
-    environment: Environment,
+    environment: Environment | None,
     normals: Array,
     materials: Sequence[oracle.Material],
     *,
     environment_rotation: float = 0.0,
     environment_intensity: float = 1.0,
+    lights: Any = (),
     **settings: object,
 ) -> NDArray[np.float32]:
     """Radiance (materials, normals, pixels, 3), seen from +Z.
@@ -70,6 +72,9 @@ def draw_patches(
             base_colour_factor=(*material.colour, 1.0),
             metallic_factor=material.metalness,
             roughness_factor=material.roughness,
+            ior=material.ior,
+            specular_factor=material.specular,
+            specular_colour_factor=material.specular_colour,
         )
         items += [
             (_patch(column, rows - 1 - row, normal), described, np.eye(4))
@@ -80,7 +85,7 @@ def draw_patches(
     scene.environment_rotation = environment_rotation
     scene.environment_intensity = environment_intensity
     scene.background = "transparent"
-    scene.add(model_of(items))
+    scene.add(model_of(items, lights=lights))
     camera = Camera(Orthographic(columns / 2, rows / 2, 0.01, 10.0))
     camera.transform.translate((columns / 2, rows / 2, 5.0))
     size = (columns * EDGE, rows * EDGE)

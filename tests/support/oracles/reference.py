@@ -48,15 +48,63 @@ def radiance(pixels: ArrayLike, directions: Array) -> Array:
 
 @dataclass(frozen=True)
 class Material:
-    """glTF's metallic-roughness material with one colour."""
+    """glTF's metallic-roughness material with one colour.
+
+    Its dielectric is that of KHR_materials_ior and KHR_materials_specular.
+    """
 
     colour: tuple[float, float, float]
     metalness: float
     roughness: float
+    ior: float = 1.5
+    specular: float = 1.0
+    specular_colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    @property
+    def dielectric(self) -> tuple[Array, float]:
+        return specular.dielectric(
+            self.ior, self.specular, self.specular_colour
+        )
 
     @property
     def f0(self) -> Array:
-        return 0.04 + self.metalness * (np.array(self.colour) - 0.04)
+        return self._mixed(self.dielectric[0], np.array(self.colour))
+
+    @property
+    def f90(self) -> float:
+        return float(self._mixed(self.dielectric[1], 1.0))
+
+    def fresnel(self, cosine: ArrayLike) -> Array:
+        """What the interface reflects (..., 3) at cosines v.h (..., 1)."""
+        return specular.schlick(cosine, self.f0, self.f90)
+
+    def covered(self, cosine: ArrayLike) -> Array:
+        """What it takes from the base: of a dielectric the most coloured.
+
+        fresnel_mix of KHR_materials_specular, in appendix B.3.5's place.
+        """
+        most = np.full(3, self.dielectric[0].max())
+        f0 = self._mixed(most, np.array(self.colour))
+        return specular.schlick(cosine, f0, self.f90)
+
+    def albedo(self, table: Array) -> Array:
+        """Of the lobe under uniform light, with energy compensation."""
+        return _compensated(self.f0, self.f90, table)
+
+    def passed(self, table: Array) -> float:
+        """The part of it that a dielectric's interface lets through."""
+        return 1.0 - float(_compensated(*self.dielectric, table).max())
+
+    def _mixed(self, dielectric: ArrayLike, metal: ArrayLike) -> Array:
+        share = self.metalness
+        return np.asarray(dielectric) * (1.0 - share) + np.multiply(
+            metal, share
+        )
+
+
+def _compensated(f0: Array, f90: float, table: Array) -> Array:
+    scale = 1.0 / table.sum() - 1.0
+    return np.asarray((f0 * table[0] + f90 * table[1]) * (1.0 + f0 * scale))
 
 
 class Surroundings:
@@ -112,7 +160,7 @@ def reflected(
     l = l[above]  # noqa: E741
     light = surroundings.light[above] * l[:, 2:]
     h = half_vectors(np.broadcast_to(v, l.shape), l)
-    fresnel = specular.schlick((h @ v)[:, None], material.f0)
+    fresnel = material.fresnel((h @ v)[:, None])
     if material.roughness < 0.3:
         total = _narrow_lobe(surroundings.pixels, frame, v, material)
     else:
@@ -123,8 +171,11 @@ def reflected(
     scale = 1.0 / table.sum() - 1.0
     if multiscatter:
         total = total * (1.0 + material.f0 * scale)
-    share = 1.0 - (0.04 * table[0] + table[1]) * (1.0 + 0.04 * scale)
-    passed = share if multiscatter else 1.0 - fresnel
+    passed = (
+        np.full(3, material.passed(table))
+        if multiscatter
+        else 1.0 - material.covered((h @ v)[:, None])
+    )
     colour = np.array(material.colour) * (1.0 - material.metalness)
     return total + colour / np.pi * np.sum(passed * light, axis=0)
 
@@ -142,9 +193,7 @@ def _narrow_lobe(
 ) -> Array:
     if material.roughness == 0.0:
         mirrored = v * (-1, -1, 1)
-        return specular.schlick(v[2], material.f0) * radiance(
-            pixels, mirrored @ frame
-        )
+        return material.fresnel(v[2]) * radiance(pixels, mirrored @ frame)
     alpha = np.array(material.roughness**2)
     # Over h = (theta, phi), tan(theta) = alpha tan(psi); the horizon of l
     # is a limit of theta, see the table of oracles.specular.
@@ -165,6 +214,6 @@ def _narrow_lobe(
     measure = np.sin(2.0 * psi) * limit * weight * phi_weight / (2.0 * np.pi)
     lobe = specular.smith_correlated(n_dot_l, v[2], alpha)
     measure = measure * lobe * n_dot_l * 4.0 * v_dot_h / h[..., 2]
-    fresnel = specular.schlick(v_dot_h[..., None], material.f0)
+    fresnel = material.fresnel(v_dot_h[..., None])
     light = radiance(pixels, l @ frame)
     return np.einsum("ij,ijk->k", measure, fresnel * light)

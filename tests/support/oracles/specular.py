@@ -78,6 +78,20 @@ def schlick(cosine: ArrayLike, f0: ArrayLike, f90: ArrayLike = 1.0) -> Array:
     return f0 + (f90 - f0) * (1.0 - np.asarray(cosine)) ** 5
 
 
+def dielectric(
+    ior: float = 1.5,
+    factor: float = 1.0,
+    colour: ArrayLike = (1.0, 1.0, 1.0),
+) -> tuple[Array, float]:
+    """F0 (3,) and F90 of a dielectric by its extensions' texts.
+
+    KHR_materials_ior: ((ior - 1) / (ior + 1))^2. KHR_materials_specular:
+    times the colour, at most 1, and both times the factor.
+    """
+    f0 = np.array([((ior - 1.0) / (ior + 1.0)) ** 2] * 3)
+    return np.minimum(f0 * np.asarray(colour), 1.0) * factor, factor
+
+
 def table_of_microfacets(
     n_dot_v: ArrayLike,
     roughness: ArrayLike,
