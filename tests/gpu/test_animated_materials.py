@@ -76,7 +76,7 @@ class Changing(moka.App):
 
     def draw(self, time: moka.GameTime, commands: moka.CommandList) -> None:
         super().draw(time, commands)
-        self.prepared.append(self.renderer._prepared)
+        self.prepared.append(self.renderer._scene.prepared)
 
 
 def test_a_frame_changes_rows_and_prepares_nothing_anew() -> None:
