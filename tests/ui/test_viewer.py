@@ -7,6 +7,7 @@ import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from PIL import Image as PillowImage
 
 import moka
 from moka.app.events import DropEvent
+from moka.app.keys import MouseButton
 from moka.app.render_request import RenderRequest
 from moka.cli.main import main
 from moka.core import resources
@@ -303,17 +305,26 @@ def test_another_picture_stands_beside_it(watch: Watch) -> None:
 
         person.wait("a grey half", is_split)
         yaw = viewer.controls.yaw
-        person.act(f"mousemove {half} 100")
-        person.wait(
-            "the pointer",
-            lambda: (
-                viewer.input.mouse.position == (half, 100)
+
+        def has_settled(x: int, *, held: bool) -> bool:
+            mouse = viewer.input.mouse
+            return (
+                mouse.position == (x, 100)
+                and mouse.is_down(MouseButton.LEFT) == held
                 and not viewer._settling
-            ),
-        )
-        person.act("mousedown 1")
-        person.act(f"mousemove {width - 20} 100")
-        person.act("mouseup 1")
+            )
+
+        # Panels see one change of the pointer in a frame, as people make
+        # them.
+        for action, x, held in (
+            (f"mousemove {half} 100", half, False),
+            ("mousedown 1", half, True),
+            (f"mousemove {width - 40} 100", width - 40, True),
+            (f"mousemove {width - 20} 100", width - 20, True),
+            ("mouseup 1", width - 20, False),
+        ):
+            person.act(action)
+            person.wait(action, partial(has_settled, x, held=held))
         person.wait("a drag", lambda: viewer.comparison.divider > 0.8)
         assert viewer.controls.yaw == yaw
         person.wait(
