@@ -23,7 +23,11 @@ def running_display() -> Iterator[str]:
     if shutil.which("Xvfb") is None:
         pytest.skip("there is no display and no Xvfb")
     read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"]
+    command = [
+        *("Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"),
+        # Else it begins anew where the last window goes as the next comes.
+        "-noreset",
+    ]
     with subprocess.Popen(
         command, pass_fds=[write], stderr=subprocess.DEVNULL
     ) as server:
