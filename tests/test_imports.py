@@ -61,6 +61,16 @@ def test_help_does_not_load_numpy(arguments: list[str]) -> None:
     assert not imported(log) & (heavy | WINDOW | TOOLS | WRITER | NOTEBOOK)
 
 
+def test_a_window_loads_one_window_library() -> None:
+    """moderngl-window knows eight, and loaders of scenes beside them."""
+    pytest.importorskip("moderngl_window")
+    log = import_log("-c", "import moka.app.window_glfw")
+    loaded = imported(log)
+    assert {"glfw", "moderngl_window"} <= loaded
+    others = {"pyglet", "pygame", "PyQt5", "PySide2", "sdl2", "tkinter"}
+    assert not loaded & (others | TOOLS | {"pywavefront", "trimesh"})
+
+
 @pytest.mark.gpu
 def test_a_headless_png_pays_for_nothing_else(tmp_path: Path) -> None:
     out = tmp_path / "demo.png"

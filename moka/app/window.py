@@ -1,11 +1,11 @@
 """A window on the screen: its events here, its pictures from elsewhere.
 
-It uses GLFW directly. moderngl-window makes its ModernGL context on the
-thread that opens the window, whereas here the render thread makes it.
+moderngl-window keeps the window; what it has nothing for on GLFW is asked of
+GLFW: waiting for events, the clipboard, the content scale and gamepads.
 """
 
-import sys
 import threading
+import warnings
 from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -60,30 +60,33 @@ class Window:
         from moka.backend.contexts.egl import release_thread
 
         release_thread()
-        self._glfw = glfw = _start_glfw()
-        self._vsync = vsync
+        try:
+            with warnings.catch_warnings():
+                # moderngl-window imports PyGLM by a name that is to go.
+                warnings.simplefilter("ignore", PendingDeprecationWarning)
+                import glfw
+
+                from moka.app.window_glfw import GlfwWindow, start_glfw
+        except ImportError as error:
+            raise ContextError(
+                "a window needs moderngl-window and GLFW: "
+                "pip install 'moka-pbr[window]'"
+            ) from error
+        start_glfw()
+        self._glfw: Any = glfw
         self._debug = debug
         self._events: list[Event] = []
-        self._pointer: tuple[float, float] | None = None
         self._context: WindowContext | None = None
-        glfw.default_window_hints()
-        for hint, value in (
-            (glfw.CONTEXT_VERSION_MAJOR, 3),
-            (glfw.CONTEXT_VERSION_MINOR, 3),
-            (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
-            (glfw.OPENGL_FORWARD_COMPAT, sys.platform == "darwin"),
-            (glfw.OPENGL_DEBUG_CONTEXT, debug),
-            (glfw.RESIZABLE, resizable),
-            (glfw.VISIBLE, visible),
-            # Pictures arrive finished from framebuffers of the renderer.
-            (glfw.DEPTH_BITS, 0),
-            (glfw.STENCIL_BITS, 0),
-        ):
-            glfw.window_hint(hint, value)
-        self._window = glfw.create_window(*size, title, None, None)
-        if not self._window:
-            raise ContextError(f"no window can be opened: {_last_error(glfw)}")
-        self._placed: tuple[int, int, int, int] | None = None
+        self._is_iconified = False
+        self._is_closed = False
+        self._window = GlfwWindow(
+            title,
+            size,
+            resizable=resizable,
+            visible=visible,
+            vsync=vsync,
+            debug=debug,
+        )
         self._listen()
         if fullscreen:
             self.fullscreen = True
@@ -97,51 +100,33 @@ class Window:
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the content in screen coordinates."""
-        width, height = self._glfw.get_window_size(self._window)
-        return width, height
+        return self._window.size
 
     @property
     def framebuffer_size(self) -> tuple[int, int]:
         """Width and height in pixels, for the viewport; may be zero."""
-        width, height = self._glfw.get_framebuffer_size(self._window)
-        return width, height
+        return self._window.buffer_size
 
     @property
     def content_scale(self) -> float:
         """By how much a person has text and buttons enlarged, 1 or more."""
-        across, down = self._glfw.get_window_content_scale(self._window)
-        return float(max(across, down, 1.0))
+        scales = self._glfw.get_window_content_scale(self._window.handle)
+        return float(max(*scales, 1.0))
 
     @property
     def is_hidden(self) -> bool:
         """Whether nothing of it can be seen, as when it is minimised."""
-        glfw = self._glfw
-        return 0 in self.framebuffer_size or bool(
-            glfw.get_window_attrib(self._window, glfw.ICONIFIED)
-        )
+        return self._is_iconified or 0 in self.framebuffer_size
 
     @property
     def fullscreen(self) -> bool:
         """Whether it fills a screen; set it to change that."""
-        return bool(self._glfw.get_window_monitor(self._window))
+        return self._window.fullscreen
 
     @fullscreen.setter
     def fullscreen(self, value: bool) -> None:
-        glfw, window = self._glfw, self._window
-        if value == self.fullscreen:
-            return
-        if not value:
-            place = self._placed or (0, 0, *self.size)
-            glfw.set_window_monitor(window, None, *place, glfw.DONT_CARE)
-            return
-        self._placed = (*glfw.get_window_pos(window), *self.size)
-        monitor = glfw.get_primary_monitor()
-        if not monitor:
-            return
-        mode = glfw.get_video_mode(monitor)
-        glfw.set_window_monitor(
-            window, monitor, 0, 0, *mode.size, mode.refresh_rate
-        )
+        if value != self.fullscreen and self._glfw.get_primary_monitor():
+            self._window.fullscreen = value
 
     @property
     def clipboard(self) -> str:
@@ -156,15 +141,11 @@ class Window:
     @property
     def captures_pointer(self) -> bool:
         """Whether the pointer is hidden and moves without bounds."""
-        glfw = self._glfw
-        mode = glfw.get_input_mode(self._window, glfw.CURSOR)
-        return bool(mode == glfw.CURSOR_DISABLED)
+        return self._window.mouse_exclusivity
 
     @captures_pointer.setter
     def captures_pointer(self, value: bool) -> None:
-        glfw = self._glfw
-        mode = glfw.CURSOR_DISABLED if value else glfw.CURSOR_NORMAL
-        glfw.set_input_mode(self._window, glfw.CURSOR, mode)
+        self._window.mouse_exclusivity = value
 
     @property
     def gamepads(self) -> list[Gamepad]:
@@ -174,17 +155,15 @@ class Window:
     @property
     def should_close(self) -> bool:
         """Whether somebody has asked for the window to be closed."""
-        return self._window is None or bool(
-            self._glfw.window_should_close(self._window)
-        )
+        return self._is_closed or bool(self._window.is_closing)
 
     def request_close(self) -> None:
         """Make :attr:`should_close` true, as a click on the cross does."""
-        self._glfw.set_window_should_close(self._window, True)
+        self._window.is_closing = True
 
     def set_title(self, title: str) -> None:
         """Change what the title bar says."""
-        self._glfw.set_window_title(self._window, title)
+        self._window.title = title
 
     def poll(self, timeout: float = 0.0) -> list[Event]:
         """What has happened since the last call, oldest first.
@@ -214,7 +193,9 @@ class Window:
             from moka.backend.contexts import WindowContext
 
             self._context = WindowContext(
-                self._window, vsync=self._vsync, debug=self._debug
+                self._window.handle,
+                vsync=self._window.vsync,
+                debug=self._debug,
             )
             return self._context
 
@@ -226,98 +207,57 @@ class Window:
         Raises ContextError while a living render thread has its context,
         because drivers crash then.
         """
-        if self._window is None:
+        if self._is_closed:
             return
         if self._context is not None:
             self._context.close()
-        self._glfw.destroy_window(self._window)
-        self._window = None
+        self._window.destroy()
+        self._is_closed = True
 
     def _listen(self) -> None:
-        """Append an event for whatever GLFW reports.
+        """Append an event for whatever the window reports."""
+        window, add = self._window, self._events.append
+        window.key_event_func = self._on_key
+        window.unicode_char_entered_func = lambda text: add(TextEvent(text))
+        window.pointer_func = lambda *motion: add(MouseMoveEvent(*motion))
+        window.mouse_press_event_func = self._on_button(True)
+        window.mouse_release_event_func = self._on_button(False)
+        window.mouse_scroll_event_func = lambda dx, dy: add(ScrollEvent(dx, dy))
+        window.files_dropped_event_func = lambda _, __, paths: add(
+            DropEvent(tuple(paths))
+        )
+        window.resize_func = lambda width, height: add(
+            ResizeEvent(width, height)
+        )
+        window.iconify_func = self._on_iconify
+        window.focus_func = lambda focused: add(FocusEvent(focused))
+        window.close_func = lambda: add(CloseEvent())
 
-        Nothing here may raise: GLFW's binding keeps an exception in one
-        place for all threads, and the render thread could be hit by it.
-        """
-        glfw, window = self._glfw, self._window
-        add = self._events.append
-        glfw.set_window_close_callback(window, lambda _: add(CloseEvent()))
-        glfw.set_framebuffer_size_callback(
-            window, lambda _, width, height: add(ResizeEvent(width, height))
-        )
-        glfw.set_scroll_callback(
-            window, lambda _, dx, dy: add(ScrollEvent(dx, dy))
-        )
-        glfw.set_char_callback(
-            window, lambda _, code: add(TextEvent(chr(code)))
-        )
-        glfw.set_window_focus_callback(
-            window, lambda _, focused: add(FocusEvent(bool(focused)))
-        )
-        glfw.set_drop_callback(
-            window, lambda _, paths: add(DropEvent(tuple(paths)))
-        )
-        glfw.set_key_callback(window, self._on_key)
-        glfw.set_cursor_pos_callback(window, self._on_move)
-        glfw.set_mouse_button_callback(window, self._on_button)
-
-    def _on_key(
-        self, _: object, code: int, __: int, action: int, held: int
-    ) -> None:
+    def _on_key(self, code: int, action: int, _: object) -> None:
         key = _keys().get(code, Key.UNKNOWN)
         pressed = action != self._glfw.RELEASE
         repeated = action == self._glfw.REPEAT
-        modifiers = Modifiers(held & _ALL_MODIFIERS)
-        self._events.append(KeyEvent(key, pressed, repeated, modifiers))
+        self._events.append(KeyEvent(key, pressed, repeated, self._held))
 
-    def _on_move(self, _: object, x: float, y: float) -> None:
-        before_x, before_y = self._pointer or (x, y)
-        self._pointer = (x, y)
-        self._events.append(MouseMoveEvent(x, y, x - before_x, y - before_y))
-
-    def _on_button(
-        self, _: object, button: int, action: int, held: int
-    ) -> None:
-        if button >= len(MouseButton):
-            return
-        x, y = self._glfw.get_cursor_pos(self._window)
-        self._events.append(
-            MouseButtonEvent(
-                MouseButton(button + 1),
-                action == self._glfw.PRESS,
-                *(x, y),
-                Modifiers(held & _ALL_MODIFIERS),
+    def _on_button(self, pressed: bool) -> Callable[[float, float, int], None]:
+        def take(x: float, y: float, button: int) -> None:
+            self._events.append(
+                MouseButtonEvent(MouseButton(button), pressed, x, y, self._held)
             )
-        )
 
+        return take
 
-def _start_glfw() -> Any:
-    """The module ``glfw``, initialised."""
-    try:
-        import glfw
-    except ImportError as error:
-        raise ContextError(
-            "a window needs GLFW: pip install 'moka-pbr[window]'"
-        ) from error
-    # Errors are asked for where they matter and not printed as warnings.
-    glfw.ERROR_REPORTING = "log"
-    if not glfw.init():
-        raise ContextError(
-            f"no window can be opened: {_last_error(glfw)}; run with a "
-            "display, for instance under xvfb-run, or headless"
-        )
-    return glfw
+    def _on_iconify(self, is_iconified: bool) -> None:
+        self._is_iconified = is_iconified
 
-
-def _last_error(glfw: Any) -> str:
-    """GLFW's last error on this thread."""
-    _, text = glfw.get_error()
-    return (text or b"GLFW gives no reason").decode("utf-8", "replace")
+    @property
+    def _held(self) -> Modifiers:
+        return Modifiers(self._window.held & _ALL_MODIFIERS)
 
 
 @cache
 def _keys() -> dict[int, Key]:
-    """Our keys by GLFW's codes."""
+    """Our keys by GLFW's codes; moderngl-window names only some of them."""
     import glfw
 
     names = {

@@ -149,6 +149,30 @@ def test_another_thread_draws_what_the_screen_shows(
     render_thread.submit(context.close).result()
 
 
+def test_it_has_colour_and_nothing_that_no_pass_uses(
+    window: Window, render_thread: ThreadPoolExecutor
+) -> None:
+    def bits(context: WindowContext) -> list[int]:
+        read = context.function(
+            "glGetFramebufferAttachmentParameteriv",
+            *(None, *(ctypes.c_uint,) * 3, ctypes.c_void_p),
+        )
+        back, depth, stencil = 0x0402, 0x1801, 0x1802
+        object_type = 0x8CD0
+        found = []
+        for attachment in (back, depth, stencil):
+            value = ctypes.c_int(-1)
+            read(0x8D40, attachment, object_type, ctypes.byref(value))
+            found.append(value.value)
+        return found
+
+    context = render_thread.submit(window.context_factory()).result()
+    default, none = 0x8218, 0
+    assert render_thread.submit(bits, context).result() == [default, none, none]
+    assert context.drain_debug_messages() == []
+    render_thread.submit(context.close).result()
+
+
 def test_a_window_stays_while_a_thread_draws_into_it(
     window: Window, render_thread: ThreadPoolExecutor
 ) -> None:
@@ -214,6 +238,29 @@ def test_buttons(window: Window) -> None:
     ]
 
 
+def test_a_button_beyond_three(window: Window) -> None:
+    act("mousemove 50 10 keydown super click 8 keyup super")
+    events = wait_for(window, MouseButtonEvent, lambda each: len(each) == 2)
+    assert events == [
+        MouseButtonEvent(
+            MouseButton.BUTTON_4, pressed, 50.0, 10.0, Modifiers.SUPER
+        )
+        for pressed in (True, False)
+    ]
+
+
+def test_the_pointer_moves_by_fractions(window: Window) -> None:
+    """As on screens with a scale; a library that rounds would lose them."""
+    for x in (10.0, 10.25, 10.75):
+        window._window.glfw_mouse_event_callback(None, x, 20.0)
+    moves = wait_for(window, MouseMoveEvent, lambda each: len(each) >= 3)
+    assert [(each.x, each.dx) for each in moves[:3]] == [
+        (10.0, 0.0),
+        (10.25, 0.25),
+        (10.75, 0.5),
+    ]
+
+
 def test_the_wheel(window: Window) -> None:
     act("mousemove 50 10 click 4 click 5")
     turns = wait_for(window, ScrollEvent, lambda turns: len(turns) == 2)
@@ -259,12 +306,34 @@ def test_only_the_main_thread_makes_windows() -> None:
     assert errors
 
 
-def test_without_glfw_it_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("package", ["glfw", "moderngl_window.context.base"])
+def test_without_its_packages_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, package: str
 ) -> None:
-    monkeypatch.setitem(sys.modules, "glfw", None)
+    monkeypatch.delitem(sys.modules, "moka.app.window_glfw", raising=False)
+    monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ContextError, match=r"moka-pbr\[window\]"):
         Window()
+
+
+def test_a_window_that_cannot_be_opened_ends_no_other(
+    monkeypatch: pytest.MonkeyPatch, window: Window
+) -> None:
+    glfw = pytest.importorskip("glfw")
+    with monkeypatch.context() as patch:
+        patch.setattr(glfw, "create_window", lambda *_: None)
+        with pytest.raises(ContextError, match="no window can be opened"):
+            Window()
+    act("mousemove 50 10 click 1")
+    assert wait_for(window, MouseButtonEvent)
+
+
+def test_a_minimised_window_is_hidden(window: Window) -> None:
+    """As GLFW reports it; nobody minimises windows without a manager."""
+    window._window.glfw_window_iconify(None, 1)
+    assert window.is_hidden
+    window._window.glfw_window_iconify(None, 0)
+    assert not window.is_hidden
 
 
 def test_without_a_display_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
