@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from moka.cli.main import main
-from tests.survey.pictures import write_pictures
+from tests.survey.pictures import write_answers, write_pictures
 
 
 @pytest.fixture
@@ -49,18 +49,7 @@ def test_answers_are_analysed_into_files(
     pytest.importorskip("scipy")
     pytest.importorskip("matplotlib")
     assert make() == 0
-    key = json.loads((folder / "out.key.json").read_text())
-    for person in range(3):
-        ratings = [
-            {"set": index, "picture": name, "rating": 3 + person + index}
-            for index, names in enumerate(key["sets"])
-            for name in names
-        ]
-        data = {
-            "survey_answers": 1, "survey": key["survey"], "consent": True,
-            "ratings": ratings,
-        }  # fmt: skip
-        (folder / f"{person}.json").write_text(json.dumps(data))
+    write_answers(folder / "out.key.json", folder)
     capsys.readouterr()
     arguments = [
         "survey", "analyse", "0.json", "1.json", "2.json",
