@@ -383,6 +383,32 @@ def test_full_screen_and_back(window: Window) -> None:
     assert not window.fullscreen
 
 
+def test_a_display_of_twice_the_scale(display: str) -> None:
+    """X11 enlarges text by a resource and never pixels."""
+    glfw = pytest.importorskip("glfw")
+    xlib = pytest.importorskip("Xlib.display")
+    connection = xlib.Display(display)
+    root = connection.screen().root
+    manager = connection.intern_atom("RESOURCE_MANAGER")
+    text = connection.intern_atom("STRING")
+    before = root.get_full_property(manager, text)
+    root.change_property(manager, text, 8, b"Xft.dpi:\t192\n")
+    connection.sync()
+    # It is read once.
+    glfw.terminate()
+    try:
+        with Window("test", (200, 100), vsync=False) as window:
+            assert window.content_scale == 2.0
+            assert window.size == window.framebuffer_size == (200, 100)
+    finally:
+        if before is None:
+            root.delete_property(manager)
+        else:
+            root.change_property(manager, text, 8, before.value)
+        connection.close()
+        glfw.terminate()
+
+
 def test_the_clipboard_keeps_a_text(window: Window) -> None:
     window.clipboard = "moka render hélmet.glb"
     assert window.clipboard == "moka render hélmet.glb"
