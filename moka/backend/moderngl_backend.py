@@ -52,6 +52,10 @@ from moka.core.heap import keep_large_blocks
 __all__ = ["ModernGLBackend"]
 
 
+# Bytes from which the copy of a buffer is felt by other threads.
+_LARGE_UPLOAD = 1 << 20
+
+
 class ModernGLBackend:
     """Implements :class:`moka.backend.protocol.Backend`.
 
@@ -130,9 +134,21 @@ class ModernGLBackend:
                     f"{descriptor.size}"
                 )
             with self._timed("upload"):
-                buffer = self._ctx.buffer(data, dynamic=descriptor.dynamic)
+                buffer = self._filled_buffer(data, size, descriptor)
             self._uploaded += size
         self._put(handle, buffer)
+
+    def _filled_buffer(
+        self, data: Any, size: int, descriptor: BufferDescriptor
+    ) -> Any:
+        if size < _LARGE_UPLOAD:
+            return self._ctx.buffer(data, dynamic=descriptor.dynamic)
+        # Without Python's lock, which ModernGL would hold all the time.
+        buffer = self._ctx.buffer(reserve=size, dynamic=descriptor.dynamic)
+        self._gl.BindBuffer(c.ARRAY_BUFFER, buffer.glo)
+        source = np.frombuffer(data, np.uint8)
+        self._gl.BufferSubData(c.ARRAY_BUFFER, 0, size, source.ctypes.data)
+        return buffer
 
     def create_texture(
         self,

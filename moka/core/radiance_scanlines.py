@@ -24,6 +24,9 @@ _SHORTEST_RUN = 4
 _LONGEST_RUN = 127
 _LONGEST_LITERAL = 128
 
+# Bytes of a file.
+_REPEATED_AT_ONCE = 1 << 20
+
 #: By its first byte: how far a packet reaches.
 _STEPS = bytes(2 if code > 128 else code + 1 for code in range(256))
 
@@ -108,7 +111,14 @@ def _decode_at_once(data: bytes, planes: Bytes) -> tuple[int, int]:
     copies[starts] = 0
     copies[starts[is_header[used]][:, np.newaxis] + np.arange(4)] = 0
     copies[starts[repeated] + 1] = counts[repeated]
-    planes[:done] = np.repeat(values[:stop], copies).reshape(done, size)
+    decoded = planes[:done].reshape(-1)
+    end = 0
+    # NumPy repeats with Python's lock: not all at once, for whoever waits.
+    for place in range(0, stop, _REPEATED_AT_ONCE):
+        part = slice(place, min(place + _REPEATED_AT_ONCE, stop))
+        texels = np.repeat(values[part], copies[part])
+        begin, end = end, end + len(texels)
+        decoded[begin:end] = texels
     return done, stop
 
 

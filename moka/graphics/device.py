@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import itertools
+import threading
 import time
 import weakref
 from collections.abc import Callable, Sequence
@@ -113,6 +114,7 @@ class GraphicsDevice:
         self._in_flight: Frame | None = None
         self._checked: dict[frozenset[Handle], int] = {}
         self._releases = 0
+        self._counting = threading.Lock()
         self._finalizer = weakref.finalize(self, self._thread.abandon)
 
     @classmethod
@@ -289,7 +291,8 @@ class GraphicsDevice:
         """
         for handle in handles:
             self._handles.release(handle)
-            self._releases += 1
+            with self._counting:
+                self._releases += 1
             self._thread.post(partial(_destroy, handle))
 
     def count(self, kind: ResourceKind) -> int:

@@ -5,6 +5,7 @@ not by a hash of it: two descriptions can never share a program by accident.
 """
 
 from collections.abc import Callable, Hashable
+from threading import Lock
 
 from msgspec import Struct
 
@@ -27,25 +28,26 @@ class _Loaded(Struct):
 
 
 class ProgramCache:
-    """Programs of one device by their descriptions."""
+    """Programs of one device by their descriptions; thread-safe."""
 
     def __init__(self, device: GraphicsDevice) -> None:
         self._device = device
         self._programs: dict[Hashable, _Loaded] = {}
+        self._lock = Lock()
 
     def __len__(self) -> int:
         return len(self._programs)
 
     def get(self, key: Hashable, describe: Describe) -> Handle:
         """The program for ``key``; ``describe`` is asked for a new one."""
-        loaded = self._programs.get(key)
-        if loaded is None:
-            descriptor = describe()
-            loaded = _Loaded(
-                self._device.create_program(descriptor), descriptor, describe
-            )
-            self._programs[key] = loaded
-        return loaded.handle
+        with self._lock:
+            loaded = self._programs.get(key)
+            if loaded is None:
+                descriptor = describe()
+                handle = self._device.create_program(descriptor)
+                loaded = _Loaded(handle, descriptor, describe)
+                self._programs[key] = loaded
+            return loaded.handle
 
     def reload(self) -> int:
         """Compile what has other sources now; returns how many that are.
@@ -55,6 +57,10 @@ class ProgramCache:
         Sources are remembered until
         :func:`moka.graphics.shader_source.forget_shaders`.
         """
+        with self._lock:
+            return self._reload()
+
+    def _reload(self) -> int:
         fresh: dict[Hashable, _Loaded] = {}
         try:
             for key, loaded in self._programs.items():

@@ -8,6 +8,7 @@ same.
 """
 
 from collections.abc import Callable
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -34,13 +35,15 @@ class LightingCache:
     """Finds and keeps lighting of one device.
 
     Without ``files`` it finds nothing and keeps nothing. What is kept is
-    read back and written by :meth:`flush`, at a time when nobody waits.
+    read back and written by :meth:`flush`, at a time when nobody waits. Of
+    threads that do, the second waits for the first.
     """
 
     def __init__(self, device: GraphicsDevice, files: DiskCache | None) -> None:
         self._device = device
         self._files = files
         self._pending: dict[str, Callable[[], Arrays]] = {}
+        self._flushing = Lock()
 
     def load(self, request: LightingRequest) -> EnvironmentLighting | None:
         """What ``request`` led to before, on the GPU again.
@@ -72,10 +75,11 @@ class LightingCache:
 
     def flush(self) -> None:
         """Write what is to be kept; waits for the GPU and the disk."""
-        pending, self._pending = self._pending, {}
-        for key, read in pending.items():
-            assert self._files is not None
-            self._files.store(key, read())
+        with self._flushing:
+            while self._pending:
+                key, read = self._pending.popitem()
+                assert self._files is not None
+                self._files.store(key, read())
 
     def _environment_key(self, request: LightingRequest) -> str:
         return self._key(

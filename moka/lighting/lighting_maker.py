@@ -1,5 +1,7 @@
 """Lighting of an environment: from the cache, or made now."""
 
+from typing import TYPE_CHECKING
+
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
@@ -9,6 +11,9 @@ from moka.lighting.environment_lighting import (
     LightingRequest,
 )
 from moka.lighting.lighting_cache import LightingCache
+
+if TYPE_CHECKING:
+    from moka.lighting.preintegration_passes import Told
 
 __all__ = ["LightingMaker"]
 
@@ -31,14 +36,19 @@ class LightingMaker:
         self._cache = LightingCache(device, cache)
         self._tables: dict[str, Handle] = {}
 
-    def make(self, request: LightingRequest) -> EnvironmentLighting:
-        """What ``request`` asks for, to be destroyed by the caller."""
+    def make(
+        self, request: LightingRequest, told: "Told | None" = None
+    ) -> EnvironmentLighting:
+        """What ``request`` asks for, to be destroyed by the caller.
+
+        ``told`` is make_lighting's.
+        """
         lighting = self._cache.load(request)
         if lighting is None:
             # What is found does not import what would have made it.
             from moka.lighting.make_lighting import make_lighting
 
-            lighting = make_lighting(self._device, self._passes, request)
+            lighting = make_lighting(self._device, self._passes, request, told)
             self._cache.keep(request, lighting)
         elif request.background:
             pixels = request.environment.pixels

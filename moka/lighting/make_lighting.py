@@ -10,6 +10,7 @@ from moka.lighting.environment_lighting import (
     LightingRequest,
 )
 from moka.lighting.preintegration import Preintegrator
+from moka.lighting.preintegration_passes import Told
 from moka.lighting.spherical_harmonics import (
     irradiance_error,
     irradiance_harmonics,
@@ -28,10 +29,17 @@ _HARMONICS_SEE_A_SUN = 0.12
 
 
 def make_lighting(
-    device: GraphicsDevice, passes: FullscreenPasses, request: LightingRequest
+    device: GraphicsDevice,
+    passes: FullscreenPasses,
+    request: LightingRequest,
+    told: Told | None = None,
 ) -> EnvironmentLighting:
-    """What ``request`` asks for, to be destroyed by the caller."""
-    preintegrator = Preintegrator(device, passes)
+    """What ``request`` asks for, to be destroyed by the caller.
+
+    If one is ``told`` of it, on any thread, in pieces between which the
+    device draws what others submit.
+    """
+    preintegrator = Preintegrator(device, passes, told)
     split = split_environment(
         request.environment, request.most_suns, search=not request.sampled
     )

@@ -18,7 +18,7 @@ from moka.graphics.passes import FullscreenPasses
 from moka.lighting.environment_maps import EnvironmentMaps, upload_map
 from moka.lighting.importance import importance_table
 from moka.lighting.irradiance_cube import irradiance_cube
-from moka.lighting.preintegration_passes import PreintegrationPasses
+from moka.lighting.preintegration_passes import PreintegrationPasses, Told
 from moka.lighting.radiance_cube import (
     ALL_FACES,
     cube_size,
@@ -36,13 +36,17 @@ __all__ = ["Preintegrator"]
 
 
 class Preintegrator:
-    """Makes environment maps on one device."""
+    """Makes environment maps on one device, in pieces if one is ``told``."""
 
     def __init__(
-        self, device: GraphicsDevice, passes: FullscreenPasses
+        self,
+        device: GraphicsDevice,
+        passes: FullscreenPasses,
+        told: Told | None = None,
     ) -> None:
         self._device = device
         self._passes = passes
+        self._told = told
 
     def sampled(self, pixels: NDArray[np.float32]) -> EnvironmentMaps:
         """A map and the table by which reference lighting samples it."""
@@ -110,7 +114,8 @@ class Preintegrator:
     ) -> None:
         """Make the cubes of an environment whose map is there."""
         assert maps.map is not None
-        passes = PreintegrationPasses(self._device, self._passes)
+        passes = PreintegrationPasses(self._device, self._passes, self._told)
+        passes.pause()
         height = len(environment.full)
         has_suns = environment.base is not environment.full
         base = (
@@ -118,6 +123,7 @@ class Preintegrator:
             if has_suns
             else maps.map
         )
+        passes.pause()
         source = passes.scratch(passes.cube(size, size.bit_length()))
         # A base is so even that one bilinear sample a texel is as good.
         uneven: Collection[int] = () if has_suns else ALL_FACES

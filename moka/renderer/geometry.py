@@ -7,7 +7,7 @@ uploaded.
 """
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,7 +32,7 @@ from moka.renderer.vertices import (
     vertices_of,
 )
 
-__all__ = ["GeometryPool"]
+__all__ = ["GeometryPool", "Upload"]
 
 # glTF attribute: shader input, components. All are float32 on the GPU.
 _ATTRIBUTES = {
@@ -55,12 +55,16 @@ class _Key(Struct, frozen=True):
     wanted: tuple[str, ...]
 
 
-class _Upload(Struct):
+class Upload(Struct):
     """Meshes that share buffers, and where their vertices begin."""
 
     meshes: dict[_Key, Handle]
     base_vertices: dict[_Key, int]
     buffers: list[Handle]
+
+
+# A primitive, and the attributes of it that are uploaded.
+Wanted = tuple[Primitive, tuple[str, ...]]
 
 
 class GeometryPool:
@@ -71,40 +75,54 @@ class GeometryPool:
 
     def __init__(self, device: GraphicsDevice) -> None:
         self._device = device
-        self._uploads: list[_Upload] = []
+        self._uploads: list[Upload] = []
         self._meshes: dict[_Key, Handle] = {}
 
-    def meshes(
-        self, wanted: Sequence[tuple[Primitive, tuple[str, ...]]]
-    ) -> list[Handle]:
+    def meshes(self, wanted: Sequence[Wanted]) -> list[Handle]:
         """The meshes of these primitives, in order.
 
         What is missing is uploaded; what is not asked for again is freed.
         """
-        keys = [
-            _Key(primitive.geometry, attributes)
-            for primitive, attributes in wanted
-        ]
+        keys = [_key(each) for each in wanted]
         used = set(keys)
         for upload in list(self._uploads):
             if used.isdisjoint(upload.meshes):
                 self._free(upload)
+        self.adopt(self.make(wanted))
+        return [self._meshes[key] for key in keys]
+
+    def make(
+        self,
+        wanted: Sequence[Wanted],
+        told: Callable[[int, int], None] | None = None,
+    ) -> list[Upload]:
+        """Upload what is missing, for :meth:`adopt`; on any thread.
+
+        ``told`` gets how many primitives are done, and of how many.
+        """
         missing = {
-            key: primitive
-            for key, (primitive, _) in zip(keys, wanted, strict=True)
-            if key not in self._meshes
+            key: each[0]
+            for each in wanted
+            if (key := _key(each)) not in self._meshes
         }
         groups: dict[tuple[tuple[str, ...], bool], dict[_Key, Vertices]] = (
             defaultdict(dict)
         )
-        for key, primitive in missing.items():
+        for done, (key, primitive) in enumerate(missing.items()):
+            if told is not None:
+                told(done, len(missing))
             vertices = vertices_of(primitive, key.wanted)
             groups[key.wanted, vertices.indices is not None][key] = vertices
-        for members in groups.values():
-            upload = _upload(self._device, members)
-            self._uploads.append(upload)
-            self._meshes.update(upload.meshes)
-        return [self._meshes[key] for key in keys]
+        return [_upload(self._device, members) for members in groups.values()]
+
+    def adopt(self, uploads: Iterable[Upload]) -> None:
+        """Have what was made; it is freed unless it is asked for next."""
+        for upload in uploads:
+            if self._meshes.keys().isdisjoint(upload.meshes):
+                self._uploads.append(upload)
+                self._meshes.update(upload.meshes)
+            else:  # somebody was faster
+                self._destroy(upload)
 
     def base_vertex(self, primitive: Primitive, wanted: tuple[str, ...]) -> int:
         """Where a primitive's vertices begin in the buffer it shares.
@@ -119,11 +137,19 @@ class GeometryPool:
         )
         return begin
 
-    def _free(self, upload: _Upload) -> None:
+    def _free(self, upload: Upload) -> None:
         for key in upload.meshes:
             del self._meshes[key]
         self._uploads.remove(upload)
+        self._destroy(upload)
+
+    def _destroy(self, upload: Upload) -> None:
         self._device.destroy(*upload.meshes.values(), *upload.buffers)
+
+
+def _key(wanted: Wanted) -> _Key:
+    primitive, attributes = wanted
+    return _Key(primitive.geometry, attributes)
 
 
 def vertex_layout(wanted: Sequence[str]) -> VertexLayout:
@@ -139,9 +165,7 @@ def vertex_layout(wanted: Sequence[str]) -> VertexLayout:
     return VertexLayout(tuple(attributes), offset)
 
 
-def _upload(
-    device: GraphicsDevice, members: Mapping[_Key, Vertices]
-) -> _Upload:
+def _upload(device: GraphicsDevice, members: Mapping[_Key, Vertices]) -> Upload:
     """One vertex and one index buffer for vertices of one layout."""
     wanted = next(iter(members)).wanted
     layout = vertex_layout(wanted)
@@ -186,7 +210,7 @@ def _upload(
         )
         base_vertex += vertices.count
         first += count if indices else 0
-    return _Upload(meshes, base_vertices, buffers)
+    return Upload(meshes, base_vertices, buffers)
 
 
 def _interleave(

@@ -1,8 +1,11 @@
 """What lights the scene of a frame: environment maps, suns and lights."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import (
@@ -33,12 +36,86 @@ from moka.renderer.view import turn_matrix
 from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
 
-__all__ = ["LightSources", "light_capacity"]
+if TYPE_CHECKING:
+    from moka.lighting.preintegration_passes import Told
+
+__all__ = ["LightSources", "MadeLighting", "MapNeeds", "light_capacity"]
 
 # 16 KiB of uniform block hold this many.
 MOST_LIGHTS = 256
 # Above the one light that shaders have a case for.
 _SMALLEST_CAPACITY = 4
+
+
+class MapNeeds(Struct, frozen=True):
+    """What of an environment a picture shows.
+
+    ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
+    ``irradiance_as``, ``ibl`` and ``reflections`` are RenderSettings'
+    ``suns``, ``irradiance``, ``ibl`` and ``reflections``. With ``blurred``
+    the background is read from the specular cube. Reference lighting samples
+    the map as it is, and the environment's own suns as discs.
+    """
+
+    background: bool
+    specular: bool
+    irradiance: bool
+    suns: str | int = "auto"
+    irradiance_as: str = "auto"
+    ibl: str = "split-sum"
+    reflections: str = "full"
+    blurred: bool = False
+
+    def request(
+        self, environment: Environment | None
+    ) -> LightingRequest | None:
+        """What to make of ``environment``; None for nothing."""
+        reflects = self.specular or self.irradiance
+        specular = self.specular or self.blurred
+        if environment is None or not (self.background or reflects or specular):
+            return None
+        if self.ibl == "reference" and reflects:
+            return LightingRequest(
+                environment,
+                MOST_SUNS,
+                self.irradiance_as,
+                background=True,
+                specular=self.blurred,
+                sampled=True,
+                half=self.reflections == "half",
+            )
+        return LightingRequest(
+            environment,
+            _most_suns(self.suns),
+            self.irradiance_as,
+            background=self.background,
+            specular=specular,
+            irradiance=self.irradiance,
+            radiance=self.ibl == "filtered" and specular,
+            half=self.reflections == "half",
+        )
+
+
+class MadeLighting(Struct, frozen=True, eq=False):
+    """Lighting, and what it was made for: a request, None for darkness."""
+
+    lighting: EnvironmentLighting
+    request: LightingRequest | None
+    mode: str
+
+    def serves(self, request: LightingRequest | None, mode: str) -> bool:
+        """Whether it has all that is asked for, made in the same way."""
+        made = self.request
+        if made is None or request is None or mode != self.mode:
+            return made is request and mode == self.mode
+        return request == replace(
+            made,
+            **{
+                kind: getattr(request, kind)
+                for kind in ("background", "specular", "irradiance", "radiance")
+                if getattr(made, kind)
+            },
+        )
 
 
 class LightSources:
@@ -54,12 +131,10 @@ class LightSources:
         self._device = device
         self._maker = LightingMaker(device, passes, cache)
         self._statistics = statistics
-        self.maps = EnvironmentMaps()
-        self.harmonics: NDArray[np.float64] | None = None
-        self._environment: Environment | None = None
-        self._suns: tuple[Sun, ...] = ()
-        self._options: tuple[str | int, ...] = ()
-        self._made = (False,) * 4
+        self._made = MadeLighting(
+            EnvironmentLighting(EnvironmentMaps()), None, "nothing yet"
+        )
+        self._ready: MadeLighting | None = None
         self._buffers: dict[int, Handle] = {}
 
     def table(self, brdf: str) -> Handle:
@@ -76,98 +151,93 @@ class LightSources:
         self._maker.keep()
 
     def update_maps(
-        self,
-        environment: Environment | None,
-        *,
-        background: bool,
-        specular: bool,
-        irradiance: bool,
-        suns: str | int = "auto",
-        irradiance_as: str = "auto",
-        ibl: str = "split-sum",
-        reflections: str = "full",
-        blurred: bool = False,
+        self, environment: Environment | None, needs: MapNeeds
     ) -> bool:
-        """Have the maps that are asked for; whether they are new ones.
-
-        ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
-        ``irradiance_as``, ``ibl`` and ``reflections`` are RenderSettings'
-        ``suns``, ``irradiance``, ``ibl`` and ``reflections``. With
-        ``blurred`` the background is read from the specular cube. Reference
-        lighting samples the map as it is, and the environment's own suns as
-        discs.
-        """
-        sampled = ibl == "reference" and (specular or irradiance)
-        if sampled:
-            background, suns = True, MOST_SUNS
-            specular = irradiance = False
-        specular |= blurred
-        options = (suns, irradiance_as, ibl, reflections)
-        wanted = (
-            (background, specular, irradiance, sampled)
-            if environment is not None
-            else (False,) * 4
-        )
-        same = environment is self._environment and options == self._options
-        if same and all(
-            made or not want
-            for made, want in zip(self._made, wanted, strict=True)
-        ):
+        """Have the maps that are asked for; whether they are new ones."""
+        request = needs.request(environment)
+        if self._made.serves(request, needs.ibl):
             return False
         self._maker.keep()
         self.maps.destroy(self._device)
-        lighting = EnvironmentLighting(EnvironmentMaps())
-        if environment is not None and any(wanted):
-            with self._statistics.stage("environment"):
-                lighting = self._maker.make(
-                    LightingRequest(
-                        environment,
-                        _most_suns(suns),
-                        irradiance_as,
-                        background=background,
-                        specular=specular,
-                        irradiance=irradiance,
-                        radiance=ibl == "filtered" and specular,
-                        sampled=sampled,
-                        half=reflections == "half",
-                    )
-                )
-        self.maps, self._suns = lighting.maps, lighting.suns
-        self.harmonics = lighting.harmonics
-        self._environment, self._made = environment, wanted
-        self._options = options
-        self._report(ibl, is_cached=lighting.is_cached)
+        made, self._ready = self._ready, None
+        if made is not None and not made.serves(request, needs.ibl):
+            made.lighting.maps.destroy(self._device)
+            made = None
+        self._made = made or self._make(request, needs.ibl)
+        self._report()
         return True
 
-    def _report(self, mode: str, *, is_cached: bool) -> None:
+    def prepare(
+        self, environment: Environment | None, needs: MapNeeds, told: "Told"
+    ) -> MadeLighting:
+        """Make lighting for :meth:`adopt`, and write it to the disk cache.
+
+        On a thread that may wait, while others draw; see
+        :func:`moka.lighting.make_lighting.make_lighting`.
+        """
+        made = self._make(needs.request(environment), needs.ibl, told)
+        self._maker.keep()
+        return made
+
+    def adopt(self, made: MadeLighting) -> None:
+        """Light with it at the next :meth:`update_maps` that it serves."""
+        if self._ready is not None:
+            self._ready.lighting.maps.destroy(self._device)
+        self._ready = made
+
+    def _make(
+        self,
+        request: LightingRequest | None,
+        mode: str,
+        told: "Told | None" = None,
+    ) -> MadeLighting:
+        if request is None:
+            dark = EnvironmentLighting(EnvironmentMaps())
+            return MadeLighting(dark, None, mode)
+        with self._statistics.stage("environment"):
+            lighting = self._maker.make(request, told)
+        return MadeLighting(lighting, request, mode)
+
+    def _report(self) -> None:
         """Say in the statistics what lights."""
         kind = "sh" if self.harmonics is not None else None
         if self.maps.irradiance is not None:
             kind = "cube"
         self._statistics.lighting.update(
-            mode=mode,
-            suns=len(self._suns),
+            mode=self._made.mode,
+            suns=len(self.suns),
             irradiance=kind,
             prefiltered_levels=(
                 0 if self.maps.specular is None else self.maps.specular_levels
             ),
-            cached=is_cached,
+            cached=self._made.lighting.is_cached,
             samples_per_pixel=0,
             estimated_error=None,
         )
 
     @property
+    def maps(self) -> EnvironmentMaps:
+        """The textures of the environment that lights."""
+        return self._made.lighting.maps
+
+    @property
+    def harmonics(self) -> NDArray[np.float64] | None:
+        """Coefficients of its irradiance, where no cube holds it."""
+        return self._made.lighting.harmonics
+
+    @property
     def suns(self) -> tuple[Sun, ...]:
         """The suns that are lights, and no part of the specular cube."""
-        return self._suns
+        return self._made.lighting.suns
 
     @property
     def map_shows_suns(self) -> bool:
         """Whether ``maps.map`` has suns of the environment drawn into it."""
-        if self._environment is None:
+        request = self._made.request
+        if request is None:
             return False
-        own = sum(not sun.in_map for sun in self._suns)
-        return own < len(self._environment.suns)
+        own = sum(not sun.in_map for sun in self.suns)
+        return own < len(request.environment.suns)
 
     def rows(
         self, scene: Scene, origin: NDArray[np.float64]
@@ -178,10 +248,10 @@ class LightSources:
         OptionError for more lights than a block can hold.
         """
         rows = scene.light_rows(origin)
-        if self._suns:
-            rows = np.concatenate([rows, _sun_rows(scene, self._suns)])
+        if self.suns:
+            rows = np.concatenate([rows, _sun_rows(scene, self.suns)])
         if len(rows) > MOST_LIGHTS:
-            suns = len(self._suns)
+            suns = len(self.suns)
             beside = f" and {suns} sun{'s' * (suns > 1)}" if suns else ""
             advice = "; turn suns off to leave them in the map" if suns else ""
             raise OptionError(

@@ -50,20 +50,25 @@ class MaterialPool:
         self._still = StillPicture(scene, still, size) if still else None
         self._describe(scene, settings)
 
-    def preload(
-        self,
-        primitives: Sequence[Primitive],
-        settings: TextureSettings,
-        told: Callable[[int, int], None],
-    ) -> None:
-        """Have all that ``primitives`` sample decoded, and wait for it.
+    def begin_primitives(
+        self, primitives: Sequence[Primitive], settings: TextureSettings
+    ) -> SceneMaterials:
+        """Start to decode all that ``primitives`` sample, on any thread.
 
-        On a thread that may wait; a scene that has them then is drawn
-        without. ``told`` gets how many textures are done, and of how many;
-        what it raises ends the waiting. Raises ImageFileError for an image
-        that cannot be had.
+        A scene that has them then is drawn without waiting for it, once
+        :meth:`finish` has.
         """
-        materials = SceneMaterials(primitives, self.textures, None, settings)
+        return SceneMaterials(primitives, self.textures, None, settings)
+
+    def finish(
+        self, materials: SceneMaterials, told: Callable[[int, int], None]
+    ) -> None:
+        """Wait until all that ``materials`` sample is decoded.
+
+        ``told`` gets how many textures are done, and of how many; what it
+        raises ends the waiting. Raises ImageFileError for an image that
+        cannot be had.
+        """
         requests = {
             request: None
             for bound in materials.requests

@@ -14,6 +14,7 @@ cull, key, gather (:mod:`moka.renderer.gather`).
 """
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,7 +34,12 @@ from moka.graphics.shader_source import forget_shaders
 from moka.lighting.disk_cache import DiskCache
 from moka.renderer.frame_block import FRAME, frame_values
 from moka.renderer.geometry import GeometryPool
-from moka.renderer.light_sources import LightSources, light_capacity
+from moka.renderer.light_sources import (
+    LightSources,
+    MadeLighting,
+    MapNeeds,
+    light_capacity,
+)
 from moka.renderer.material_pool import MaterialPool
 from moka.renderer.prepared_scene import LAYER_BACKGROUND, PreparedScene
 from moka.renderer.progressive import Progressive
@@ -50,6 +56,7 @@ from moka.scene.scene import Scene
 if TYPE_CHECKING:
     from moka.model.mesh import Primitive
     from moka.renderer.debug_view import DebugPass
+    from moka.renderer.geometry import Upload
     from moka.renderer.surface_values import SurfaceValues, ValueTargets
 
 __all__ = ["Renderer"]
@@ -184,16 +191,48 @@ class Renderer:
         """
         self._sources.keep()
 
-    def preload(
+    def prepare_geometry(
         self,
         primitives: "Sequence[Primitive]",
-        told: Callable[[int, int], None],
-    ) -> None:
-        """Decode what ``primitives`` sample before they are drawn.
+        told: Callable[[str, int, int], None],
+    ) -> "list[Upload]":
+        """Decode and upload what ``primitives`` are drawn with.
 
-        On a thread that may wait; see MaterialPool.preload.
+        On a thread that may wait, while another one draws. ``told`` gets
+        what is being done (``meshes`` or ``images``), how many are, and of
+        how many; what it raises ends it. Raises ImageFileError for an image
+        that cannot be had.
         """
-        self._materials.preload(primitives, self.settings.textures, told)
+        materials = self._materials.begin_primitives(
+            primitives, self.settings.textures
+        )
+        attributes = [each.attributes for each in materials.descriptions]
+        # While the images decode.
+        uploads = self._geometry.make(
+            list(zip(primitives, attributes, strict=True)),
+            partial(told, "meshes"),
+        )
+        self._materials.finish(materials, partial(told, "images"))
+        return uploads
+
+    def adopt_geometry(self, uploads: "list[Upload]") -> None:
+        """Have what was prepared for a scene that is drawn next."""
+        self._geometry.adopt(uploads)
+
+    def prepare_lighting(
+        self, environment: Any, scene: Scene, told: Callable[[int, int], None]
+    ) -> MadeLighting:
+        """What will light ``scene`` with ``environment``, whatever it shows.
+
+        On a thread that may wait, while another one draws. ``told`` gets
+        how many pieces are done, and of how many; what it raises ends it.
+        """
+        needs = self._map_needs(scene, is_lit=True, has_diffuse=True)
+        return self._sources.prepare(environment, needs, told)
+
+    def adopt_lighting(self, lighting: MadeLighting) -> None:
+        """Light with it from now on, if the scene has that environment."""
+        self._sources.adopt(lighting)
 
     def draw(self, scene: Scene, camera: Camera, commands: CommandList) -> None:
         """Record a frame of ``scene`` seen by ``camera`` into ``commands``.
@@ -406,26 +445,32 @@ class Renderer:
         )
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
-        is_lit = self.settings.ibl != "off"
-        has_diffuse = materials.has_diffuse or (
-            materials.has_lit and self.settings.light_part == "irradiance"
+        needs = self._map_needs(
+            scene, is_lit=materials.has_lit, has_diffuse=materials.has_diffuse
         )
-        changed = self._sources.update_maps(
-            scene.environment,
-            background=scene.background == "environment",
-            specular=materials.has_lit and is_lit,
-            irradiance=has_diffuse and is_lit,
-            suns=self.settings.suns if is_lit else "off",
-            irradiance_as=self.settings.irradiance,
-            ibl=self.settings.ibl,
-            reflections=self.settings.reflections,
-            blurred=scene.background == "environment"
-            and scene.background_blur > 0.0,
-        )
-        if changed:
+        if self._sources.update_maps(scene.environment, needs):
             self._screen.forget()
             self._sky_map.forget()
             self._scene.forget()
+
+    def _map_needs(
+        self, scene: Scene, *, is_lit: bool, has_diffuse: bool
+    ) -> MapNeeds:
+        """What of an environment ``scene`` shows, whichever it is."""
+        settings = self.settings
+        shows_irradiance = is_lit and settings.light_part == "irradiance"
+        reflects = settings.ibl != "off"
+        has_background = scene.background == "environment"
+        return MapNeeds(
+            background=has_background,
+            specular=is_lit and reflects,
+            irradiance=(has_diffuse or shows_irradiance) and reflects,
+            suns=settings.suns if reflects else "off",
+            irradiance_as=settings.irradiance,
+            ibl=settings.ibl,
+            reflections=settings.reflections,
+            blurred=has_background and scene.background_blur > 0.0,
+        )
 
     def _visible(self, scene: Scene, camera: Camera) -> NDArray[np.intp]:
         width, height = self.size

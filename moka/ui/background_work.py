@@ -2,11 +2,15 @@
 
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from time import monotonic
 from typing import Any, TypeVar
 
 __all__ = ["BackgroundWork"]
 
 Result = TypeVar("Result")
+
+# Seconds from one word of a job's progress to the next that is shown.
+_TELLING_INTERVAL = 0.2
 
 
 class BackgroundWork:
@@ -22,6 +26,7 @@ class BackgroundWork:
         self._pool = ThreadPoolExecutor(2, thread_name_prefix="moka-background")
         self._jobs: list[tuple[str, Future[Any], Callable[[Any], None]]] = []
         self._detail = ""
+        self._told = 0.0
         self._closed = False
 
     def start(
@@ -50,7 +55,10 @@ class BackgroundWork:
         if self._closed:
             raise CancelledError
         self._detail = detail
-        self._wake()
+        # A picture for each would take the work's time away.
+        if monotonic() - self._told > _TELLING_INTERVAL:
+            self._told = monotonic()
+            self._wake()
 
     def poll(self) -> None:
         """Hand over what is done; raises what a job raised."""

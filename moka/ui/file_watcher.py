@@ -21,8 +21,8 @@ class FileWatcher:
 
     def __init__(self, changed: Callable[[frozenset[Path]], None]) -> None:
         self._changed = changed
-        self._stop: threading.Event | None = None
-        self._thread: threading.Thread | None = None
+        self._stop = threading.Event()
+        self._threads: list[threading.Thread] = []
         self._watched: frozenset[Path] = frozenset()
 
     def watch(self, paths: Iterable[Path]) -> None:
@@ -30,48 +30,54 @@ class FileWatcher:
         wanted = frozenset(path.resolve() for path in paths)
         if wanted == self._watched:
             return
-        self.close()
+        # The thread before ends when it looks next; nobody waits for it.
+        self._stop.set()
+        self._threads = [each for each in self._threads if each.is_alive()]
         self._watched = wanted
         if not wanted:
             return
         self._stop = threading.Event()
-        self._thread = threading.Thread(
+        thread = threading.Thread(
             target=self._run,
             args=(wanted, self._stop),
             name="moka-watch",
             daemon=True,
         )
-        self._thread.start()
+        self._threads.append(thread)
+        thread.start()
 
     def close(self) -> None:
-        """Watch nothing any more."""
+        """Watch nothing any more; waits for its threads."""
         self._watched = frozenset()
-        if self._stop is not None and self._thread is not None:
-            self._stop.set()
-            self._thread.join()
-            self._stop = self._thread = None
+        self._stop.set()
+        for thread in self._threads:
+            thread.join()
+        self._threads.clear()
 
     def _run(self, wanted: frozenset[Path], stop: threading.Event) -> None:
         try:
             from watchfiles import watch
         except ImportError:
             return
-        # Editors replace a file by another, which only its folder knows of.
-        folders = {
-            path if path.is_dir() else path.parent
-            for path in wanted
-            if path.parent.is_dir()
-        }
+        # Editors replace a file by another, which only its folder knows of;
+        # below that folder may be all that a person has.
+        folders = {path.parent for path in wanted if path.parent.is_dir()}
+        for path in wanted:
+            if path.is_dir():
+                below = (each for each in path.rglob("*") if each.is_dir())
+                folders |= {path, *below}
         changes = watch(
             *folders,
             watch_filter=_within(wanted),
             stop_event=stop,
             rust_timeout=200,
             debounce=200,
-            recursive=True,
+            recursive=False,
             raise_interrupt=False,
         )
         for found in changes:
+            if stop.is_set():
+                return
             self._changed(frozenset(Path(path) for _, path in found))
 
 

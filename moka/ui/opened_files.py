@@ -19,12 +19,18 @@ from moka.ui.file_watcher import FileWatcher
 from moka.ui.preferences import Preferences, with_recent
 
 if TYPE_CHECKING:
+    from moka.renderer.geometry import Upload
+    from moka.renderer.light_sources import MadeLighting
+    from moka.renderer.renderer import Renderer
     from moka.ui.viewer import Viewer
 
 __all__ = ["OpenedFiles"]
 
 MODEL_SUFFIXES = (".gltf", ".glb")
 ENVIRONMENT_SUFFIXES = (".hdr", ".exr")
+
+# What is done to what the renderer prepares.
+_VERBS = {"images": "decoding", "meshes": "preparing"}
 
 
 class OpenedFiles:
@@ -81,8 +87,10 @@ class OpenedFiles:
             partial(self._show_model, source, keep_view=keep_view),
         )
 
-    def _read_model(self, source: Any) -> tuple[Model, ModelLayout]:
-        """A model whose images are decoded; in the background."""
+    def _read_model(
+        self, source: Any
+    ) -> "tuple[Model, ModelLayout, list[Upload]]":
+        """A model that is ready to be drawn; in the background."""
         viewer = self._viewer
         model = source
         if not isinstance(source, Model):
@@ -96,31 +104,56 @@ class OpenedFiles:
             model.variant_index(begun.variant),
         )
 
-        def told(done: int, total: int) -> None:
+        def told(what: str, done: int, total: int) -> None:
             viewer.work.tell(
-                f"decoding images of {_name(source)}: {done} of {total}"
+                f"{_VERBS[what]} {what} of {_name(source)}: {done} of {total}"
             )
 
-        viewer.renderer.preload(layout.primitives, told)
-        return model, layout
+        uploads = viewer.renderer.prepare_geometry(layout.primitives, told)
+        return model, layout, uploads
 
     def open_environment(self, source: Any) -> None:
         """Read an environment in the background, and light with it."""
-        viewer = self._viewer
-        read = partial(load_environment, source)
-        if source is None or isinstance(source, Environment):
-            read = partial(_identity, source)
-        viewer.work.start(
+        self._viewer.work.start(
             f"reading {_name(source)}",
-            read,
+            partial(self._read_environment, source),
             partial(self._show_environment, source),
         )
 
+    def _read_environment(
+        self, source: Any
+    ) -> "tuple[Environment | None, list[tuple[Renderer, MadeLighting]]]":
+        """An environment, and what lights each picture; in the background."""
+        viewer = self._viewer
+        environment = source
+        if source is not None and not isinstance(source, Environment):
+            environment = load_environment(source)
+
+        def told(done: int, total: int) -> None:
+            viewer.work.tell(
+                f"preparing the light of {_name(source)}: "
+                f"{100 * done // total} %"
+            )
+
+        renderers = [viewer.renderer]
+        beside = viewer.comparison.renderer
+        if beside is not None and viewer.comparison.choice is not None:
+            renderers.append(beside)
+        return environment, [
+            (each, each.prepare_lighting(environment, viewer.scene, told))
+            for each in renderers
+        ]
+
     def _show_model(
-        self, source: Any, read: tuple[Model, ModelLayout], *, keep_view: bool
+        self,
+        source: Any,
+        read: "tuple[Model, ModelLayout, list[Upload]]",
+        *,
+        keep_view: bool,
     ) -> None:
         viewer = self._viewer
-        model, _ = read
+        model, _, uploads = read
+        viewer.renderer.adopt_geometry(uploads)
         is_first = viewer.model is None
         viewer.remove_model()
         begun = viewer.begun
@@ -169,10 +202,14 @@ class OpenedFiles:
         viewer.look_through(choice)
 
     def _show_environment(
-        self, source: Any, environment: Environment | None
+        self,
+        source: Any,
+        read: "tuple[Environment | None, list[tuple[Renderer, MadeLighting]]]",
     ) -> None:
         viewer = self._viewer
-        viewer.scene.environment = environment
+        viewer.scene.environment, made = read
+        for renderer, lighting in made:
+            renderer.adopt_lighting(lighting)
         self.environment_source = source
         if _is_path(source) and Path(source).exists():
             viewer.preferences = replace(
@@ -231,7 +268,3 @@ def _is_path(source: Any) -> bool:
 
 def _is_among(source: Any, changed: set[Path]) -> bool:
     return _is_path(source) and Path(source).resolve() in changed
-
-
-def _identity(value: Any) -> Any:
-    return value

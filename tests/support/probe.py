@@ -34,7 +34,7 @@ from moka.lighting.environment import Environment
 from moka.lighting.environment_maps import CUBE_SAMPLER
 from moka.material.description import Feature
 from moka.renderer.frame_block import FRAME
-from moka.renderer.light_sources import LightSources, light_capacity
+from moka.renderer.light_sources import LightSources, MapNeeds, light_capacity
 from moka.renderer.permutation import LightingDescription, lights_layout
 from moka.scene.scene import Scene
 
@@ -96,13 +96,15 @@ class LightingProbe:
         sources = LightSources(device, self._passes, self.statistics)
         sources.update_maps(
             environment,
-            background=False,
-            specular=True,
-            irradiance=True,
-            suns=suns,
-            irradiance_as=irradiance,
-            ibl=ibl,
-            reflections=reflections,
+            MapNeeds(
+                background=False,
+                specular=True,
+                irradiance=True,
+                suns=suns,
+                irradiance_as=irradiance,
+                ibl=ibl,
+                reflections=reflections,
+            ),
         )
         scene = Scene()
         scene.environment = environment

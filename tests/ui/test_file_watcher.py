@@ -2,15 +2,17 @@
 
 import os
 import queue
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from moka.ui.file_watcher import FileWatcher
 
-pytest.importorskip("watchfiles")
+watchfiles = pytest.importorskip("watchfiles")
 
 WAIT_S = 20.0
 
@@ -88,3 +90,47 @@ def test_nothing_is_told_after_the_end(
     model.write_text("2")
     with pytest.raises(queue.Empty):
         changes.get(timeout=1.0)
+
+
+def test_what_lies_below_the_folder_of_a_file_is_not_watched(
+    tmp_path: Path,
+    watcher: FileWatcher,
+    changes: "queue.Queue[frozenset[Path]]",
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    watched: list[str] = []
+    whole = watchfiles.watch
+
+    def watch(*folders: str | Path, **options: Any) -> Any:
+        assert options["recursive"] is False
+        watched.extend(map(str, folders))
+        return whole(*folders, **options)
+
+    monkeypatch.setattr(watchfiles, "watch", watch)
+    (tmp_path / "all" / "of" / "a" / "disk").mkdir(parents=True)
+    model = tmp_path / "model.gltf"
+    model.write_text("0")
+    watcher.watch([model])
+    assert until_told(changes, model, "1") == {model.resolve()}
+    assert watched == [str(tmp_path.resolve())]
+
+
+def test_nobody_waits_for_a_watch_that_ends(
+    tmp_path: Path,
+    watcher: FileWatcher,
+    changes: "queue.Queue[frozenset[Path]]",
+) -> None:
+    first, second = tmp_path / "first.gltf", tmp_path / "second.gltf"
+    first.write_text("0")
+    second.write_text("0")
+    watcher.watch([first])
+    assert until_told(changes, first, "1") == {first.resolve()}
+    threads = threading.active_count()
+    watcher.watch([second])
+    # The one before has not looked yet: it does five times a second.
+    assert threading.active_count() == threads + 1
+    assert until_told(changes, second, "1") == {second.resolve()}
+    first.write_text("2")
+    assert until_told(changes, second, "2") == {second.resolve()}
+    watcher.close()
+    assert threading.active_count() == threads - 1

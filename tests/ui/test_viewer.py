@@ -25,9 +25,11 @@ from moka.core.decode import decode_image
 from moka.core.encoded_image import EncodedImage
 from moka.core.radiance_hdr import write_radiance_hdr
 from moka.graphics.shader_source import forget_shaders
+from moka.lighting.lighting_maker import LightingMaker
 from moka.material.material import Material, Texture
-from moka.model import cube, model_of, save_model
+from moka.model import cube, model_of, save_model, sphere
 from moka.model.cameras import Perspective
+from moka.renderer import geometry
 from moka.ui.viewer import Viewer
 from tests.support.display import running_display
 from tests.support.person import Person
@@ -495,6 +497,47 @@ def test_the_window_answers_while_images_are_decoded(
         assert viewer.model is shown
 
     watch(story)
+
+
+def test_what_is_opened_is_prepared_elsewhere(
+    watch: Watch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    threads: dict[str, set[str]] = {"light": set(), "vertices": set()}
+
+    def noting(what: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def note(*values: Any, **named: Any) -> Any:
+            threads[what].add(threading.current_thread().name)
+            return function(*values, **named)
+
+        return note
+
+    monkeypatch.setattr(
+        LightingMaker, "make", noting("light", LightingMaker.make)
+    )
+    monkeypatch.setattr(
+        geometry, "vertices_of", noting("vertices", geometry.vertices_of)
+    )
+    lit = tmp_path / "lit.hdr"
+    write_radiance_hdr(lit, np.full((16, 32, 3), 0.5, np.float32))
+    ball = tmp_path / "ball.glb"
+    save_model(model_of([(sphere(), Material(), np.eye(4))]), ball)
+
+    def story(person: Person, viewer: Viewer) -> None:
+        environment, model = viewer.scene.environment, viewer.model
+        viewer.open(lit)
+        person.wait(
+            "the light", lambda: viewer.scene.environment is not environment
+        )
+        viewer.open(ball)
+        person.wait("the model", lambda: viewer.model is not model)
+        box = (20, 20, 60, 60)
+        person.wait("a picture", lambda: bool(person.look(box).any()))
+
+    viewer = watch(story)
+    assert viewer.error is None
+    for what, names in threads.items():
+        assert names, what
+        assert all(name.startswith("moka-background") for name in names), what
 
 
 def test_a_picture_is_saved_whole_where_another_one_stands_beside_it(
