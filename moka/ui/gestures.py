@@ -17,6 +17,7 @@ from moka.app.events import (
 from moka.app.keys import Key, Modifiers, MouseButton
 from moka.ui.panels.output import unused_path
 from moka.ui.panels.timeline import toggle_playing
+from moka.ui.picture_command import copy_command
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -57,7 +58,7 @@ class Gestures:
                 self._drag(event)
             case ScrollEvent(dy=clicks) if not interface.wants_pointer:
                 viewer.controls.zoom(clicks, viewer.camera, self._pointer())
-                viewer.look()
+                viewer.viewpoint.follow()
 
     def advance(self, seconds: float) -> None:
         """Go on with what moves as long as time passes."""
@@ -65,7 +66,7 @@ class Gestures:
         viewer = self._viewer
         if viewer.auto_rotates and not self._pressed_at:
             viewer.controls.orbit(-_ROTATION * seconds, 0.0)
-            viewer.look()
+            viewer.viewpoint.follow()
 
     def _press(self, event: KeyEvent) -> None:
         viewer = self._viewer
@@ -83,17 +84,16 @@ class Gestures:
                 toggle_playing(viewer)
             case Key.TAB | Key.H:
                 viewer.shows_panels = not viewer.shows_panels
-            case Key.C if is_control and viewer.window is not None:
-                viewer.window.clipboard = viewer.command()
-                viewer.tell("copied: moka render ...")
+            case Key.C if is_control:
+                copy_command(viewer)
             case Key.R:
                 viewer.auto_rotates = not viewer.auto_rotates
             case Key.C:
-                viewer.next_camera()
+                viewer.viewpoint.next_camera()
             case Key.F:
-                viewer.frame_selection()
+                viewer.viewpoint.frame_selection()
             case Key.HOME:
-                viewer.frame_everything()
+                viewer.viewpoint.frame_everything()
 
     def _click(self, event: MouseButtonEvent) -> None:
         viewer = self._viewer
@@ -129,7 +129,7 @@ class Gestures:
             viewer.controls.pan(across, down, viewer.camera)
         else:
             return
-        viewer.look()
+        viewer.viewpoint.follow()
 
     def _fly(self, seconds: float) -> None:
         viewer = self._viewer
@@ -152,7 +152,7 @@ class Gestures:
         if Modifiers.SHIFT in keyboard.modifiers:
             step *= 4.0
         viewer.controls.fly(*(step * way))
-        viewer.look()
+        viewer.viewpoint.follow()
         viewer.request_redraw()
 
     def _pointer(self) -> tuple[float, float]:

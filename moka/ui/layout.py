@@ -24,10 +24,9 @@ def column_width(width: int, scale: float) -> int:
 
 def draw_interface(viewer: "Viewer", imgui: Any, size: tuple[int, int]) -> None:
     """Say what there is to see in a window of ``size``."""
-    if viewer.model is not None and viewer.selection is not None:
-        box = viewer.bounds_of(viewer.selection)
-        if box is not None:
-            draw_box(imgui, box, viewer.camera, viewer.area)
+    box = viewer.selected_bounds
+    if box is not None:
+        draw_box(imgui, box, viewer.camera, viewer.area)
     if viewer.debug_view is None:
         here = f"{viewer.settings.ibl}, {viewer.settings.brdf}"
         viewer.comparison.draw_divider(imgui, viewer.area, here)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from moka.app.render_request import RenderRequest
 from moka.core.errors import MokaError
 from moka.core.resources import asset_folder, shader_folder
 from moka.lighting.environment import Environment, load_environment
@@ -61,6 +60,11 @@ class OpenedFiles:
         path = Path(source)
         return str(path.absolute() if path.is_file() else source)
 
+    def scene_of(self, source: Any) -> str | int | None:
+        """Which scene of a model is shown: one was chosen for the first."""
+        begun = self._viewer.begun
+        return begun.scene if source is begun.source else None
+
     def open(self, path: str | os.PathLike[str]) -> None:
         """Open a model or an environment, as its ending says."""
         viewer = self._viewer
@@ -97,11 +101,11 @@ class OpenedFiles:
             path = asset_folder() / "demo.glb" if source is None else source
             model = load_model(path)
         # The scene finds the layout again as long as somebody holds it.
-        begun = viewer.begun if viewer.model is None else RenderRequest()
+        variant = viewer.begun.variant if viewer.model is None else None
         layout = viewer.scene.layout_of(
             model,
-            model.scene_index(begun.scene),
-            model.variant_index(begun.variant),
+            model.scene_index(self.scene_of(source)),
+            model.variant_index(variant),
         )
 
         def told(what: str, done: int, total: int) -> None:
@@ -159,7 +163,7 @@ class OpenedFiles:
         begun = viewer.begun
         viewer.model = viewer.scene.add(
             model,
-            scene=begun.scene if is_first else None,
+            scene=self.scene_of(source),
             variant=begun.variant if is_first else None,
         )
         if viewer.model.model.animations:
@@ -178,7 +182,8 @@ class OpenedFiles:
         viewer.selection = None
         viewer.error = None
         self._watch()
-        viewer.camera_number = -1
+        viewer.viewpoint.forget_cameras()
+        viewer.edits.clear()
         if viewer.window is not None:
             viewer.window.set_title(f"{_name(source)} - moka")
         if keep_view:
@@ -188,18 +193,18 @@ class OpenedFiles:
         if isinstance(choice, str):
             choice = parse_camera(choice)
         if isinstance(choice, Look):
-            viewer.look_as(choice)
+            viewer.viewpoint.look_as(choice)
             return
         if isinstance(choice, Orbit) or (
             choice is None and not viewer.scene.cameras
         ):
-            viewer.orbit(
+            viewer.viewpoint.orbit(
                 choice or Orbit(viewer.controls.yaw, viewer.controls.pitch)
             )
             return
         if not isinstance(choice, Camera):
             choice = choose_camera(viewer.scene, choice, width / height)
-        viewer.look_through(choice)
+        viewer.viewpoint.look_through(choice)
 
     def _show_environment(
         self,

@@ -107,7 +107,7 @@ class Readbacks:
             viewer.selection = nodes.row_of_number(picked.number - 1)
             if is_double:
                 viewer.controls.set_pivot(picked.point.tolist())
-                viewer.look()
+                viewer.viewpoint.follow()
 
         self.when_read(list(read.values()), then)
 

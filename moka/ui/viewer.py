@@ -4,23 +4,22 @@ It draws on demand. Whatever takes long (reading a file, writing a picture)
 is done in the background while the window answers; what goes wrong there is
 told in the window, and the picture stays as it was.
 
-Here is its state and what a person may want of it. Files that are opened are
+Here is its state, and what it does in each frame. Files that are opened are
 in :mod:`moka.ui.opened_files`, keys and the pointer in
-:mod:`moka.ui.gestures`, what is read back from the GPU in
-:mod:`moka.ui.readbacks`, where panels stand in :mod:`moka.ui.layout`.
+:mod:`moka.ui.gestures`, where the camera goes in :mod:`moka.ui.viewpoint`,
+what is read back from the GPU in :mod:`moka.ui.readbacks`, where panels stand
+in :mod:`moka.ui.layout`, and the command of what is seen in
+:mod:`moka.ui.picture_command`.
 """
 
-import math
 import os
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numpy as np
 from msgspec.structs import replace
 
 from moka.app.application import App, GameTime
-from moka.app.command_text import command_text
 from moka.app.events import (
     DropEvent,
     Event,
@@ -34,8 +33,6 @@ from moka.commands.commands import Timestamps
 from moka.commands.sort_key import SortKey
 from moka.core.errors import MokaError, OptionError
 from moka.renderer.settings import RenderSettings
-from moka.scene.camera import Camera
-from moka.scene.camera_choice import Look, Orbit, look_text
 from moka.scene.lights import Light
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
@@ -51,6 +48,7 @@ from moka.ui.orbit_controls import OrbitControls
 from moka.ui.panels.all_panels import all_panels
 from moka.ui.preferences import Preferences, save_preferences
 from moka.ui.readbacks import Readbacks
+from moka.ui.viewpoint import Viewpoint
 
 __all__ = ["Viewer"]
 
@@ -68,7 +66,8 @@ class Viewer(App):
     is the last thing that went wrong, ``message`` what else to tell a person.
     ``comparison`` is what stands beside the picture, ``measurement`` the last
     one of the light's error, ``times`` where the time of frames goes,
-    ``added_lights`` those that are no file's.
+    ``added_lights`` those that are no file's, ``edits`` what of the file was
+    changed, as a person is told.
 
     What is chosen is saved at the end if ``preferences`` are given.
     """
@@ -94,7 +93,7 @@ class Viewer(App):
         self.shows_help = False
         self.auto_rotates = self.preferences.auto_rotates
         self.added_lights: list[Light] = []
-        self.camera_number = -1
+        self.edits: set[str] = set()
         self.interface: Interface
         self.panels = all_panels()
         opened = self.preferences.open_panels
@@ -108,6 +107,7 @@ class Viewer(App):
         self.measurement: ErrorMeasurement | None = None
         self.work = BackgroundWork(self.request_redraw)
         self.files = OpenedFiles(self)
+        self.viewpoint = Viewpoint(self)
         self.gestures = Gestures(self)
         self.readbacks = Readbacks(self)
         self._settling = 0
@@ -285,49 +285,6 @@ class Viewer(App):
         """Read an environment in the background, and light with it."""
         self.files.open_environment(source)
 
-    def frame_everything(self) -> None:
-        """Look at the whole model."""
-        self._frame(self.scene.bounds())
-
-    def frame_selection(self) -> None:
-        """Look at the node that is selected, or else at everything."""
-        bounds = None
-        if self.model is not None and self.selection is not None:
-            bounds = self.bounds_of(self.selection)
-        self._frame(self.scene.bounds() if bounds is None else bounds)
-
-    def next_camera(self) -> None:
-        """Look through the next camera of the file, if it has any."""
-        cameras = self.scene.cameras
-        if cameras:
-            self.camera_number = (self.camera_number + 1) % len(cameras)
-            self.look_through(cameras[self.camera_number])
-
-    def look_through(self, camera: Camera) -> None:
-        """Stand where ``camera`` does, free to go on from there."""
-        bounds = self.scene.bounds()
-        centre = np.zeros(3) if bounds is None else np.mean(bounds, axis=0)
-        distance = float(np.linalg.norm(camera.position - centre)) or 1.0
-        self.camera.projection = camera.projection
-        self.controls.look_from(camera, distance)
-        self.look()
-
-    def look_as(self, look: Look) -> None:
-        """Stand where a look is from, and go around its target."""
-        camera = look.camera()
-        self.camera.projection = camera.projection
-        self.controls.look_from(camera, math.dist(look.eye, look.target))
-        self.look()
-
-    def orbit(self, orbit: Orbit) -> None:
-        """Look at the whole model from around it."""
-        self.controls.yaw = orbit.yaw
-        self.controls.pitch = orbit.pitch
-        self.frame_everything()
-        if orbit.distance is not None:
-            self.controls.distance = orbit.distance
-        self.look()
-
     def save_picture(self, path: str | os.PathLike[str]) -> None:
         """Save the next picture, without panels, as .png or .exr."""
         self.readbacks.save_picture(Path(path))
@@ -345,59 +302,23 @@ class Viewer(App):
         )
         self.request_redraw()
 
-    def request(self) -> RenderRequest:
-        """What would render the picture that is seen now."""
-        time, animation = 0.0, None
-        if self.model is not None and self.model.model.animations:
-            current = self.model.animations.current
-            if current is not None:
-                time, animation = current.time, current.animation
-        return replace(
-            self.begun,
-            source=self.files.model_source,
-            environment=self.files.environment_source,
-            environment_rotation=self.scene.environment_rotation,
-            environment_intensity=self.scene.environment_intensity,
-            background=self.scene.background,
-            background_blur=self.scene.background_blur,
-            camera=look_text(self.controls.look(self.camera)),
-            size=self.size,
-            settings=self.settings,
-            time=time,
-            animation=animation,
-            variant=None if self.model is None else self.model.variant,
-        )
-
-    def command(self) -> str:
-        """The ``moka render`` command for :meth:`request`."""
-        return command_text(self.request())
-
     def remove_model(self) -> None:
         """Take the model that is open out of the scene, if there is one."""
         if self.model is not None:
             self.model.remove()
             self.model = None
 
-    def bounds_of(self, node: int) -> Any:
-        """The world box (2, 3) of a node of the model; None if it is empty."""
-        assert self.model is not None
+    @property
+    def selected_bounds(self) -> Any:
+        """The world box (2, 3) of what is selected; None if it is empty."""
+        if self.model is None or self.selection is None:
+            return None
         drawables = self.scene.drawables
-        row = self.model.rows[node]
-        shown = drawables.row == row
-        return drawables.bounds(shown) if shown.any() else None
+        return drawables.bounds(
+            drawables.row == self.model.rows[self.selection]
+        )
 
-    # The camera and the window.
-
-    def look(self) -> None:
-        """Have the camera follow the controls."""
-        self.controls.apply(self.camera)
-        self.draft.note_motion()
-        self.request_redraw()
-
-    def _frame(self, bounds: Any) -> None:
-        width, height = self.size
-        self.controls.frame(bounds, self.camera, width / height)
-        self.look()
+    # The window.
 
     @property
     def window_size(self) -> tuple[int, int]:

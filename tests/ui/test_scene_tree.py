@@ -44,6 +44,7 @@ def viewer_of(parents: Any) -> Any:
         ),
         handles=handles,
         selection=None,
+        edits=set(),
         request_redraw=lambda: None,
     )
 

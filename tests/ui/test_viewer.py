@@ -30,6 +30,7 @@ from moka.material.material import Material, Texture
 from moka.model import cube, model_of, save_model, sphere
 from moka.model.cameras import Perspective
 from moka.renderer import geometry
+from moka.ui.picture_command import picture_command
 from moka.ui.viewer import Viewer
 from tests.support.display import running_display
 from tests.support.person import Person
@@ -389,7 +390,7 @@ def test_the_copied_command_makes_the_picture_that_is_seen(
         person.act("mousemove 60 60 key ctrl+c")
         person.wait("a copy", lambda: "copied" in (viewer.message or ""))
         assert viewer.window is not None
-        (tmp_path / "command").write_text(viewer.command())
+        (tmp_path / "command").write_text(picture_command(viewer))
 
     watch(story)
     words = shlex.split((tmp_path / "command").read_text())

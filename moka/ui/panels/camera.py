@@ -43,9 +43,9 @@ class CameraPanel(Panel):
             "turn around", viewer.auto_rotates
         )
         if imgui.button("frame all"):
-            viewer.frame_everything()
+            viewer.viewpoint.frame_everything()
         imgui.same_line()
         imgui.begin_disabled(viewer.selection is None)
         if imgui.button("frame the selection"):
-            viewer.frame_selection()
+            viewer.viewpoint.frame_selection()
         imgui.end_disabled()

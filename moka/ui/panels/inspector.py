@@ -51,6 +51,7 @@ class InspectorPanel(Panel):
             changed, value = imgui.drag_float3(name, value, speed)
             if changed:
                 setattr(node, name, tuple(value))
+                viewer.edits.add("moved nodes")
                 viewer.request_redraw()
 
 
@@ -75,6 +76,7 @@ def _draw_material(
         return
     try:
         viewer.scene.edit_material(material, **changes)
+        viewer.edits.add("edited materials")
     except OptionError as error:
         viewer.error = str(error)
     viewer.request_redraw()

@@ -54,7 +54,7 @@ class LightsPanel(Panel):
         _, visible = imgui.checkbox(name, light.visible)
         if visible != light.visible:
             light.visible = visible
-            viewer.request_redraw()
+            self._note(viewer, light)
         if not light.visible:
             return
         intensity = slider(
@@ -78,7 +78,7 @@ class LightsPanel(Panel):
                 intensity=max(intensity, 0.0),
                 colour=(red, green, blue) if changed else now.colour,
             )
-            viewer.request_redraw()
+            self._note(viewer, light)
         if light not in viewer.added_lights:
             return
         azimuth, elevation = _direction(light)
@@ -91,6 +91,12 @@ class LightsPanel(Panel):
             viewer.added_lights.remove(light)
             viewer.scene.remove(light)
             viewer.request_redraw()
+
+    def _note(self, viewer: "Viewer", light: "Light") -> None:
+        """Something about it has changed."""
+        if light not in viewer.added_lights:
+            viewer.edits.add("edited lights")
+        viewer.request_redraw()
 
 
 def _point(light: "Light", azimuth: float, elevation: float) -> None:

@@ -40,7 +40,7 @@ class ModelPanel(Panel):
         for number, camera in enumerate(model.cameras):
             imgui.push_id(number)
             if imgui.button(camera.name or f"camera {number}"):
-                viewer.look_through(camera)
+                viewer.viewpoint.look_through(camera)
             imgui.pop_id()
 
     def _open(self, imgui: Any, viewer: "Viewer") -> None:

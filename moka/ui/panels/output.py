@@ -4,6 +4,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moka.ui.panels.panel import Panel
+from moka.ui.picture_command import (
+    beyond_command,
+    copy_command,
+    picture_command,
+)
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -34,11 +39,15 @@ class OutputPanel(Panel):
             if imgui.small_button("another name"):
                 self._path = str(unused_path(path.with_suffix(".png")))
         imgui.separator()
-        if imgui.button("copy the command") and viewer.window is not None:
-            viewer.window.clipboard = viewer.command()
-            viewer.tell("copied: moka render ...")
+        if imgui.button("copy the command"):
+            copy_command(viewer)
         if imgui.is_item_hovered():
-            imgui.set_tooltip(viewer.command())
+            imgui.set_tooltip(picture_command(viewer))
+        missing = beyond_command(viewer)
+        if missing:
+            imgui.text_disabled("not part of the command:")
+            for each in missing:
+                imgui.bullet_text(each)
 
 
 def unused_path(path: Path) -> Path:

@@ -94,6 +94,7 @@ class SceneTreePanel(Panel):
         changed, visible = imgui.checkbox("##visible", node.visible)
         if changed:
             node.visible = visible
+            viewer.edits.add("nodes shown or hidden")
             viewer.request_redraw()
         depth = 0 if rows.search else min(int(rows.depth[row]), _DEEPEST)
         imgui.same_line(
