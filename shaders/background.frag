@@ -2,9 +2,8 @@
 
 #include "include/background.glsl"
 
-in vec2 uv;
 out vec4 colour;
 
 void main() {
-    colour = vec4(background_radiance(uv), 1.0);
+    colour = vec4(background_radiance(), 1.0);
 }

@@ -2,9 +2,8 @@
 
 #include "include/scene_radiance.glsl"
 
-in vec2 uv;
 out vec4 radiance;
 
 void main() {
-    radiance = scene_radiance(ivec2(gl_FragCoord.xy), uv);
+    radiance = scene_radiance();
 }

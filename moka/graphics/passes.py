@@ -48,12 +48,17 @@ class FullscreenPasses:
         self,
         fragment: str,
         defines: Mapping[str, str | int] = _NOTHING,
+        *,
+        vertex: str = "fullscreen.vert",
     ) -> Handle:
-        """The program of ``shaders/<fragment>`` with these defines."""
+        """The program of ``shaders/<fragment>`` with these defines.
+
+        ``vertex`` makes the triangle.
+        """
         return self._programs.get(
-            (fragment, tuple(sorted(defines.items()))),
+            (vertex, fragment, tuple(sorted(defines.items()))),
             lambda: ProgramDescriptor(
-                load_shader("fullscreen.vert", defines),
+                load_shader(vertex, defines),
                 load_shader(fragment, defines),
                 fragment,
             ),

@@ -55,8 +55,8 @@ def _background(discs: int) -> UniformLayout:
 _TONE_MAP = UniformLayout(
     "ToneMap",
     (
-        Parameter("display", ParameterType.VEC4),
-        Parameter("background", ParameterType.VEC4),
+        Parameter("display_parameters", ParameterType.VEC4),
+        Parameter("background_colour", ParameterType.VEC4),
     ),
 )
 
@@ -88,7 +88,9 @@ class Sky:
         self.binding = TextureBinding(
             "environment_map", environment_map, MAP_SAMPLER
         )
-        self.defines = {"MOKA_FLOAT_TARGET": 1} if float_target else {}
+        self.defines = {"MOKA_SKY": 1}
+        if float_target:
+            self.defines["MOKA_FLOAT_TARGET"] = 1
         level = angle = 0.0
         if cube is not None:
             self.defines["MOKA_BLURRED_SKY"] = 1
@@ -168,7 +170,7 @@ class ScreenPasses:
         buffer = commands.command_buffer(key)
         buffer.fill_buffer(self._background, sky.block)
         buffer.draw(
-            self._passes.program("background.frag", {**sky.defines, **far}),
+            self._program("background.frag", {**sky.defines, **far}),
             self._passes.triangle,
             self._group(
                 BindGroupDescriptor((sky.binding,), (self._sky_block,))
@@ -186,7 +188,7 @@ class ScreenPasses:
         defines, textures = self._scene(buffer, targets, sky)
         buffer.bind_framebuffer(targets.resolved)
         buffer.draw(
-            self._passes.program("resolve.frag", defines),
+            self._program("resolve.frag", defines),
             self._passes.triangle,
             self._group(BindGroupDescriptor(textures, (self._sky_block,))),
             FULLSCREEN,
@@ -217,16 +219,17 @@ class ScreenPasses:
         """
         values = _TONE_MAP.pack(
             {
-                "display": (2.0**exposure, 1.0 / (gamma or 1.0), 0.0, 0.0),
-                "background": (
-                    (0, 0, 0, 0) if background is None else (*background, 1)
-                ),
+                "display_parameters": (2.0**exposure, 1 / (gamma or 1), 0, 0),
+                "background_colour": (*(background or (0, 0, 0)), 0),
             }
         )
         buffer = commands.command_buffer(key)
         buffer.fill_buffer(self._tone_map, values)
         defines, textures = self._scene(buffer, targets, sky)
+        defines["MOKA_DISPLAY"] = 1
         defines[f"MOKA_TONE_MAP_{tone_map.upper()}"] = 1
+        if background is not None:
+            defines["MOKA_BACKGROUND_COLOUR"] = 1
         if gamma is not None:
             defines["MOKA_ENCODE_GAMMA"] = 1
         blocks = (self._sky_block, UniformBinding("ToneMap", self._tone_map))
@@ -237,7 +240,7 @@ class ScreenPasses:
             buffer.viewport(0, 0, *window)
         buffer.scissor(area)
         buffer.draw(
-            self._passes.program("tone_map.frag", defines),
+            self._program("tone_map.frag", defines),
             self._passes.triangle,
             self._group(BindGroupDescriptor(textures, blocks)),
             FULLSCREEN,
@@ -254,10 +257,13 @@ class ScreenPasses:
         if targets.samples > 1:
             defines["MOKA_SAMPLES"] = targets.samples
         if sky is not None:
-            defines |= {**sky.defines, "MOKA_SKY": 1}
+            defines |= sky.defines
             textures.append(sky.binding)
             buffer.fill_buffer(self._background, sky.block)
         return defines, tuple(textures)
+
+    def _program(self, fragment: str, defines: dict[str, str | int]) -> Handle:
+        return self._passes.program(fragment, defines, vertex="screen.vert")
 
     def _group(self, descriptor: BindGroupDescriptor) -> Handle:
         if descriptor not in self._groups:

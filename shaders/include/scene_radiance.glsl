@@ -13,9 +13,9 @@ uniform sampler2DMS radiance_map;
 uniform sampler2D radiance_map;
 #endif
 
-// Premultiplied by coverage. ``uv`` is the place in the picture, (0, 0) at
-// the lower left, ``pixel`` the same in pixels.
-vec4 scene_radiance(ivec2 pixel, vec2 uv) {
+// Premultiplied by coverage, which is 1 with a sky.
+vec4 scene_radiance() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
 #ifdef MOKA_SAMPLES
     vec4 mean = vec4(0.0);
     for (int i = 0; i < MOKA_SAMPLES; ++i) {
@@ -26,9 +26,8 @@ vec4 scene_radiance(ivec2 pixel, vec2 uv) {
     vec4 mean = texelFetch(radiance_map, pixel, 0);
 #endif
 #ifdef MOKA_SKY
-    if (mean.a < 1.0) {
-        mean += (1.0 - mean.a) * vec4(background_radiance(uv), 1.0);
-    }
+    mean.rgb += max(1.0 - mean.a, 0.0) * background_radiance();
+    mean.a = 1.0;
 #endif
     return mean;
 }

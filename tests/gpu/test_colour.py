@@ -12,6 +12,9 @@ pytestmark = pytest.mark.gpu
 # Below half of an 8-bit step by a factor of 500.
 TOLERANCE = 4e-6
 
+# Of a pass that shows none, its block without suns.
+NO_SKY = bytes(80)
+
 
 def greys(values: np.ndarray) -> np.ndarray:
     return np.repeat(values[:, None], 3, axis=1)
@@ -67,7 +70,7 @@ def test_the_pass_exposes_maps_and_encodes(name, gamma):
     radiance = radiances()[:4000].reshape(40, 100, 3)
     alpha = np.linspace(0.0, 1.0, 4000).reshape(40, 100, 1)
     texels = np.concatenate((radiance * alpha, alpha), axis=-1)
-    defines = {f"MOKA_TONE_MAP_{name.upper()}": 1}
+    defines = {"MOKA_DISPLAY": 1, f"MOKA_TONE_MAP_{name.upper()}": 1}
     if gamma:
         defines["MOKA_ENCODE_GAMMA"] = 1
     block = np.zeros((2, 4), np.float32)
@@ -75,9 +78,10 @@ def test_the_pass_exposes_maps_and_encodes(name, gamma):
     picture = gpu().draw(
         "tone_map.frag",
         (100, 40),
+        vertex="screen.vert",
         defines=defines,
         textures={"radiance_map": gpu().texture(texels)},
-        blocks={"ToneMap": block.tobytes()},
+        blocks={"ToneMap": block.tobytes(), "Background": NO_SKY},
     )
     display = tone_map(radiance.astype(np.float64), name, 1.5)
     code = display ** (1.0 / gamma) if gamma else encode_srgb(display)
@@ -91,12 +95,14 @@ def test_a_background_colour_leaves_as_it_was_given():
     """Neither exposed nor tone mapped, and covered by what is in front."""
     behind = np.array([0.2, 0.4, 0.6])
     texels = np.array([[[0, 0, 0, 0], [0.25, 0.25, 0.25, 0.5], [1, 0, 0, 1]]])
-    block = np.array([[4, 1, 0, 0], [*behind, 1]], np.float32)
+    block = np.array([[4, 1, 0, 0], [*behind, 0]], np.float32)
     picture = gpu().draw(
         "tone_map.frag",
         (3, 1),
+        vertex="screen.vert",
+        defines={"MOKA_DISPLAY": 1, "MOKA_BACKGROUND_COLOUR": 1},
         textures={"radiance_map": gpu().texture(texels)},
-        blocks={"ToneMap": block.tobytes()},
+        blocks={"ToneMap": block.tobytes(), "Background": NO_SKY},
     )
     # Exposed by two stops, 0.5 becomes 1 and half of the pixel.
     light = np.array([behind, 0.5 * behind + 0.5, [1.0, 0.0, 0.0]])

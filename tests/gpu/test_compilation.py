@@ -28,7 +28,6 @@ TONE_MAPS = (
 PASSES = [
     ("equirectangular_to_cube.frag", ()),
     ("downsample_cube.frag", ()),
-    ("background.frag", ()),
     ("accumulate.frag", ()),
     ("accumulate_batch.frag", ()),
     ("resolve_samples.frag", ()),
@@ -39,18 +38,29 @@ PASSES = [
         ("brdf_table.frag", ("MOKA_SAMPLE_COUNT", "MOKA_TABLE_SIZE", brdf))
         for brdf in BRDFS
     ),
+]
+SCREEN_PASSES = [
+    ("background.frag", {"MOKA_SKY": 1}),
+    ("background.frag", {"MOKA_SKY": 1, "MOKA_SUN_DISCS": 64}),
     *(
-        ("tone_map.frag", (tone_map, *gamma))
+        ("tone_map.frag", {"MOKA_DISPLAY": 1, tone_map: 1, **gamma, **colour})
         for tone_map in TONE_MAPS
-        for gamma in ((), ("MOKA_ENCODE_GAMMA",))
+        for gamma in ({}, {"MOKA_ENCODE_GAMMA": 1})
+        for colour in ({}, {"MOKA_BACKGROUND_COLOUR": 1})
     ),
     *(
-        (shader, scene)
-        for shader in ("resolve.frag", "tone_map.frag")
+        (shader, {**display, **scene})
+        for shader, display in (
+            ("resolve.frag", {}),
+            ("tone_map.frag", {"MOKA_DISPLAY": 1}),
+        )
         for scene in (
-            ("MOKA_SKY",),
-            ("MOKA_SAMPLES",),
-            ("MOKA_SAMPLES", "MOKA_SKY", "MOKA_SUN_DISCS"),
+            {"MOKA_SAMPLES": 4},
+            {"MOKA_SKY": 1},
+            {"MOKA_SKY": 1, "MOKA_BLURRED_SKY": 1, "MOKA_SUN_DISCS": 1},
+            # As many as vertices hand on, and one more.
+            {"MOKA_SKY": 1, "MOKA_SAMPLES": 4, "MOKA_SUN_DISCS": 4},
+            {"MOKA_SKY": 1, "MOKA_SAMPLES": 4, "MOKA_SUN_DISCS": 5},
         )
     ),
 ]
@@ -65,9 +75,12 @@ PARTS_OF_SURFACE = {
     "shading_normal.glsl",
     "skin.glsl",
 }
+# For vertex shaders, which are compiled above.
+OF_VERTICES = {"fullscreen.glsl"}
 INCLUDES = sorted(
     {path.name for path in (shader_folder() / "include").glob("*.glsl")}
     - PARTS_OF_SURFACE
+    - OF_VERTICES
 )
 
 
@@ -75,6 +88,12 @@ INCLUDES = sorted(
 def test_a_pass_compiles_in_all_its_permutations(name, defines):
     fragment = load_shader(name, dict.fromkeys(defines, 16))
     gpu().compile(load_shader("fullscreen.vert"), fragment)
+
+
+@pytest.mark.parametrize(("name", "defines"), SCREEN_PASSES)
+def test_a_screen_pass_compiles_in_its_permutations(name, defines):
+    fragment = load_shader(name, defines)
+    gpu().compile(load_shader("screen.vert", defines), fragment)
 
 
 @pytest.mark.parametrize("name", INCLUDES)

@@ -253,6 +253,8 @@ def test_the_background_shows_the_direction_of_each_pixel(axis):
     picture = gpu().draw(
         "background.frag",
         (32, 32),
+        vertex="screen.vert",
+        defines={"MOKA_SKY": 1},
         textures={"environment_map": gpu().texture(image)},
         blocks={"Background": block},
     )
@@ -268,6 +270,8 @@ def test_a_background_brighter_than_half_floats_stays_finite():
     picture = gpu().draw(
         "background.frag",
         (4, 4),
+        vertex="screen.vert",
+        defines={"MOKA_SKY": 1},
         dtype="f2",
         textures={"environment_map": gpu().texture(np.full((2, 4, 3), 1e9))},
         blocks={

@@ -111,3 +111,27 @@ def test_a_sun_found_in_a_map_is_seen_as_it_was(
     )
     assert np.array_equal(on, off)
     assert 1e3 < on.max() <= 1e4
+
+
+@pytest.mark.parametrize("count", [4, 5, 9])
+def test_each_of_many_suns_is_seen(
+    egl_device: GraphicsDevice, count: int
+) -> None:
+    """Up to four come from the vertices, more of them from the block."""
+    up = np.array([0.0, 1.0, 0.0])
+    right = np.cross(TOWARDS, up)
+    offsets = np.linspace(-0.05, 0.05, count)[:, None]
+    directions = TOWARDS + offsets * right / np.linalg.norm(right)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    sky = np.full((16, 32, 3), 0.25, np.float32)
+    suns = tuple(
+        Sun(tuple(direction), (0.001 * (i + 1), 0.002, 0.003), 0.004)
+        for i, direction in enumerate(directions.tolist())
+    )
+    together, *alone = (
+        picture(egl_device, 0, 96, environment=Environment(sky, some))
+        for some in (suns, *((sun,) for sun in suns))
+    )
+    expected = 0.25 + sum(image[..., :3] - 0.25 for image in alone)
+    assert together[..., :3] == pytest.approx(expected, rel=1e-4)
+    assert all(image.max() > 20.0 for image in alone)

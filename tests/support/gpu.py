@@ -102,6 +102,7 @@ class Gpu:
         name: str,
         size: tuple[int, int],
         *,
+        vertex: str = "fullscreen.vert",
         defines: Defines = NO_DEFINES,
         textures: Mapping[str, Any] = NO_TEXTURES,
         blocks: Mapping[str, bytes] = NO_BLOCKS,
@@ -109,13 +110,18 @@ class Gpu:
     ) -> Image:
         """Draw the full-screen pass ``shaders/<name>``.
 
-        ``size`` is (width, height). Returns float32 of shape (height,
-        width, 4), the first row at gl_FragCoord.y = 0.5; ``dtype`` is that
-        of the target.
+        ``vertex`` makes its triangle; ``size`` is (width, height). Returns
+        float32 of shape (height, width, 4), the first row at
+        gl_FragCoord.y = 0.5; ``dtype`` is that of the target.
         """
         with self.context:
             return self._draw(
-                load_shader(name, defines), size, textures, blocks, dtype
+                load_shader(name, defines),
+                size,
+                textures,
+                blocks,
+                dtype,
+                load_shader(vertex, defines),
             )
 
     def texture(self, pixels: ArrayLike) -> moderngl.Texture:
@@ -157,8 +163,9 @@ class Gpu:
         textures: Mapping[str, Any],
         blocks: Mapping[str, bytes],
         dtype: str,
+        vertex: ShaderText | None = None,
     ) -> Image:
-        program = self._program(load_shader("fullscreen.vert"), text)
+        program = self._program(vertex or load_shader("fullscreen.vert"), text)
         for unit, (name, texture) in enumerate(textures.items()):
             # A sampler that an expression does not need is optimised away.
             if name in program:
