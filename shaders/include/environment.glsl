@@ -2,16 +2,35 @@
 
 #include "include/constants.glsl"
 
-// The texture coordinates of a direction in an equirectangular map whose top
-// row is at v = 0: u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi. atan in
-// place of acos, which loses half its digits towards the poles. u is
-// arbitrary at a pole, but atan(0, 0) would be undefined.
+// atan(x) / pi for x from -1 to 1: the polynomial of this degree whose
+// largest error, 8e-8, is smallest (tests/support/oracles/minimax.py).
+vec2 arctangent_over_pi(vec2 x) {
+    vec2 square = x * x;
+    vec2 sum = 0.00216826106 * square - 0.0106965554;
+    sum = sum * square + 0.0253450018;
+    sum = sum * square - 0.0421230360;
+    sum = sum * square + 0.0630502350;
+    sum = sum * square - 0.106052476;
+    return x * (sum * square + 0.318308648);
+}
+
+// The texture coordinates of a direction in an equirectangular map that
+// repeats in u and whose top row is at v = 0: v = acos(y) / pi, and u = 0.5 +
+// atan2(z, x) / 2 pi, less 1 where x < 0 < z: from -0.25 to 0.75. The
+// length of a direction is between 1e-9 and 1e9.
+//
+// Without cases: half an azimuth, mirrored to x >= 0, and half a latitude are
+// at most an eighth of a turn, so their tangents are at most 1. u is
+// arbitrary at a pole, but 0 / 0 would be undefined.
 vec2 equirectangular_from_direction(vec3 direction) {
     float radius = length(direction.xz);
-    float x = radius > 0.0 ? direction.x : 1.0;
+    vec2 adjacent = vec2(
+        max(radius + abs(direction.x), 1e-20), length(direction) + radius);
+    // One division for both.
+    vec2 tangents = direction.zy * adjacent.yx / (adjacent.x * adjacent.y);
+    vec2 halves = arctangent_over_pi(tangents);
     return vec2(
-        0.5 + 0.5 * INVERSE_PI * atan(direction.z, x),
-        INVERSE_PI * atan(radius, direction.y));
+        direction.x < 0.0 ? -halves.x : 0.5 + halves.x, 0.5 - 2.0 * halves.y);
 }
 
 // The unit direction at texture coordinates ``uv`` of such a map.

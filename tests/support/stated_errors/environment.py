@@ -32,6 +32,8 @@ def equirectangular() -> float:
     )
     u = 0.5 + np.arctan2(d[:, 2], d[:, 0]) / (2.0 * np.pi)
     v = np.arctan2(np.hypot(d[:, 0], d[:, 2]), d[:, 1]) / np.pi
+    # The map repeats in u: whole turns don't matter.
+    value[:, 0] -= np.rint(value[:, 0] - u)
     return absolute(value, np.stack((u, v), axis=-1))
 
 
