@@ -1,8 +1,8 @@
 // The mean of all batches of a pixel, however many it got; until one is
-// complete, the mean of the frames there are.
+// complete, the mean of the frames there are of it.
 
 layout(std140) uniform Accumulation {
-    int frames;  // of the first batch if it is what there is, else 0
+    int frames;  // of the batch that has begun
     int tile;    // pixels along the edge of a tile
 };
 
@@ -14,8 +14,8 @@ out vec4 radiance;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    radiance = frames > 0
-        ? texelFetch(batch_map, pixel, 0) / float(frames)
-        : texelFetch(sum_map, pixel, 0)
-            / max(texelFetch(moment_map, pixel, 0).z, 1.0);
+    float batches = texelFetch(moment_map, pixel, 0).z;
+    radiance = batches > 0.0
+        ? texelFetch(sum_map, pixel, 0) / batches
+        : texelFetch(batch_map, pixel, 0) / float(frames);
 }

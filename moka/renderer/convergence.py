@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-__all__ = ["TILE", "Convergence", "Schedule", "rectangles"]
+__all__ = ["TILE", "Convergence", "Schedule", "rectangles", "tiles_of"]
 
 #: Pixels along the edge of a tile: enough of them that the error of the
 #: error averages out, small against an object.
@@ -57,23 +57,44 @@ class Schedule(Struct, frozen=True):
 class Convergence:
     """Which tiles, a grid (rows, columns), are to be sampled on.
 
-    Without ``max_error`` all of them are, for as long as frames come.
-    ``active`` is bool (rows, columns), the bottom row first. ``error`` is
-    the largest of a tile, the root of the mean square of its pixels'
-    relative standard errors; None before there are two batches.
-    ``mean_batches`` is the mean over pixels.
+    A tile gets ``batches``, or fewer if its error is down to ``max_error``
+    before. Those that are not ``seen``, which by default all are, wait. All
+    grids have the bottom row first. ``error`` is the largest of a tile that
+    is seen, the root of the mean square of its pixels' relative standard
+    errors; None before there are two batches. ``mean_batches`` is the mean
+    over pixels of tiles that are seen.
     """
 
-    def __init__(self, tiles: tuple[int, int], max_error: float | None) -> None:
-        self.active = np.ones(tiles, np.bool_)
+    def __init__(
+        self, tiles: tuple[int, int], max_error: float | None, batches: int
+    ) -> None:
+        self.seen = np.ones(tiles, np.bool_)
         self.error: float | None = None
         self.mean_batches = 0.0
         self._max_error = max_error
+        self._wanted = batches
+        self._batches = np.zeros(tiles, np.intp)
+        self._is_exact = np.zeros(tiles, np.bool_)
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Tiles that are seen and need more batches."""
+        return self.seen & self._needs_more
 
     @property
     def is_reached(self) -> bool:
-        """Whether every tile's error is small enough."""
+        """Whether every tile that is seen has its batches."""
         return not self.active.any()
+
+    def see(self, tiles: NDArray[np.bool_]) -> bool:
+        """Sample other tiles from now on; whether any begin to be."""
+        begin = tiles & ~self.seen & self._needs_more
+        self.seen = tiles
+        return bool(begin.any())
+
+    def end_batch(self) -> None:
+        """Count a batch of all tiles that are active."""
+        self._batches[self.active] += 1
 
     def update(self, report: NDArray[np.floating[Any]]) -> None:
         """Take in what ``tile_error.frag`` says, (rows, columns, 4).
@@ -83,15 +104,38 @@ class Convergence:
         square, batches, pixels, _ = np.moveaxis(
             np.asarray(report, np.float64), -1, 0
         )
-        self.mean_batches = float(np.average(batches, weights=pixels))
-        if batches.min() < 2:
+        seen = self.seen
+        if not seen.any():
+            return
+        self.mean_batches = float(
+            np.average(batches[seen], weights=pixels[seen])
+        )
+        if batches[seen].min() < 2:
             return
         errors = np.sqrt(square)
-        self.error = float(errors.max())
+        self.error = float(errors[seen].max())
         if self._max_error is not None:
             # NaN is not small.
             is_small = errors <= self._max_error
-            self.active &= ~(is_small & (batches >= _BATCHES_TO_TRUST))
+            self._is_exact |= is_small & (batches >= _BATCHES_TO_TRUST)
+
+    @property
+    def _needs_more(self) -> NDArray[np.bool_]:
+        return ~self._is_exact & (self._batches < self._wanted)
+
+
+def tiles_of(
+    area: tuple[int, int, int, int] | None, size: tuple[int, int]
+) -> NDArray[np.bool_]:
+    """The tiles (rows, columns) of a picture of ``size`` that it overlaps.
+
+    ``area`` is x, y, width and height from the lower left; None is all.
+    """
+    tiles = np.zeros((-(-size[1] // TILE), -(-size[0] // TILE)), np.bool_)
+    x, y, width, height = area or (0, 0, *size)
+    rows = slice(y // TILE, -(-(y + height) // TILE))
+    tiles[rows, x // TILE : -(-(x + width) // TILE)] = True
+    return tiles
 
 
 def rectangles(

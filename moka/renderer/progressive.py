@@ -4,7 +4,7 @@ Each frame samples the light of every pixel a few times, through another
 point of the pixel, which makes edges smooth. A run of frames is a batch,
 randomised anew, so that the spread of the batches' means tells the error of
 the mean of all of them. Tiles whose error is small enough are sampled no
-more.
+more, and those that nobody sees not yet.
 """
 
 import math
@@ -43,6 +43,7 @@ from moka.renderer.convergence import (
     Convergence,
     Schedule,
     rectangles,
+    tiles_of,
 )
 from moka.renderer.targets import Targets
 
@@ -71,7 +72,7 @@ class Progressive:
 
     Per frame: :meth:`begin`, then, unless :attr:`is_finished`, draw with
     :attr:`jitter` and :attr:`sample_range` into the scene's target, whose
-    converged tiles :meth:`mask` keeps from being drawn, and
+    other tiles :meth:`mask` keeps from being drawn, and
     :meth:`accumulate`.
     """
 
@@ -84,18 +85,15 @@ class Progressive:
         self._size = (0, 0)
         self._resources: list[Handle] = []
         self._schedule = Schedule.of(1)
-        self._convergence = Convergence((0, 0), None)
+        self._convergence = Convergence((1, 1), None, 1)
         self._frame = 0
         self._report: Readback | None = None
-        self._uniforms = [
-            device.create_buffer(
-                BufferDescriptor(
-                    BufferUsage.UNIFORM, _ACCUMULATION.size, dynamic=True
-                ),
-                np.zeros(_ACCUMULATION.size, np.uint8),
-            )
-            for _ in range(2)
-        ]
+        self._uniforms = device.create_buffer(
+            BufferDescriptor(
+                BufferUsage.UNIFORM, _ACCUMULATION.size, dynamic=True
+            ),
+            np.zeros(_ACCUMULATION.size, np.uint8),
+        )
 
     def begin(
         self,
@@ -103,14 +101,17 @@ class Progressive:
         targets: Targets,
         samples: int,
         max_error: float | None,
+        area: tuple[int, int, int, int] | None = None,
     ) -> None:
         """Go on with the picture ``key`` stands for, or start it.
 
         ``key`` is all that the radiance depends on, ``targets`` what frames
         are drawn into, ``samples`` those of a pixel, rounded up to whole
         batches, ``max_error`` the relative standard error that is enough.
+        Tiles outside of ``area`` (x, y, width, height from the lower left)
+        are not sampled; they begin when it comes to them.
         """
-        width, height, *_ = size = targets.size
+        size = targets.size
         if size != self._size or targets.scene_texture != self._source:
             self.forget()
             self._allocate(targets)
@@ -121,10 +122,15 @@ class Progressive:
             self._schedule = Schedule.of(
                 samples, stops_early=max_error is not None
             )
-            tiles = (-(-height // TILE), -(-width // TILE))
-            self._convergence = Convergence(tiles, max_error)
+            tiles = tiles_of(None, size)
+            self._convergence = Convergence(
+                tiles.shape, max_error, self._schedule.batches
+            )
             self._frame = 0
             self._report = None
+        if self._convergence.see(tiles_of(area, size)):
+            # A batch that not all of them have from its start is none.
+            self._frame -= self._frame % self._schedule.frames
         self.take_report()
 
     def take_report(self) -> None:
@@ -136,10 +142,7 @@ class Progressive:
     @property
     def is_finished(self) -> bool:
         """Whether no frame is left to be drawn."""
-        return (
-            self._frame >= self._schedule.total_frames
-            or self._convergence.is_reached
-        )
+        return self._convergence.is_reached
 
     @property
     def jitter(self) -> tuple[float, float]:
@@ -168,7 +171,7 @@ class Progressive:
         return self._convergence.error
 
     def mask(self, buffer: CommandBuffer, nearest: float) -> None:
-        """Let nothing be drawn in tiles that have converged.
+        """Let nothing be drawn in tiles that are not sampled.
 
         To be recorded after the clear of the scene's target; ``nearest`` is
         the depth that nothing is nearer than.
@@ -184,25 +187,27 @@ class Progressive:
     ) -> None:
         """Add what was drawn, and leave the mean so far in its place."""
         buffer = commands.command_buffer(key)
-        batch, frame = divmod(self._frame, self._schedule.frames)
+        frame = self._frame % self._schedule.frames
         active = rectangles(self._convergence.active, self._size)
+        if self._frame == 0:
+            buffer.bind_framebuffer(self._sum_target)
+            buffer.clear((0.0, 0.0, 0.0, 0.0))
         buffer.bind_framebuffer(self._batch_target)
         # The first frame of a batch replaces what the last batch left.
         state = _ADD if frame else FULLSCREEN
         self._draw(buffer, "accumulate.frag", self._from_frame, state, active)
         self._frame += 1
-        ends_batch = frame + 1 == self._schedule.frames
-        first_frames = 0 if batch or ends_batch else frame + 1
-        for uniforms, frames in zip(
-            self._uniforms, (frame + 1, first_frames), strict=True
-        ):
-            buffer.fill_buffer(
-                uniforms, _ACCUMULATION.pack({"frames": frames, "tile": TILE})
-            )
-        if ends_batch:
-            self._end_batch(buffer, batch, active)
+        buffer.fill_buffer(
+            self._uniforms,
+            _ACCUMULATION.pack({"frames": frame + 1, "tile": TILE}),
+        )
+        if frame + 1 == self._schedule.frames:
+            self._end_batch(buffer, active)
+        seen = rectangles(self._convergence.seen, self._size)
         buffer.bind_framebuffer(targets.scene)
-        self._draw(buffer, "resolve_samples.frag", self._from_sums, FULLSCREEN)
+        self._draw(
+            buffer, "resolve_samples.frag", self._from_sums, FULLSCREEN, seen
+        )
 
     def forget(self) -> None:
         """Destroy what refers to targets that are about to go."""
@@ -212,20 +217,16 @@ class Progressive:
         self._source: Handle | None = None
 
     def _end_batch(
-        self,
-        buffer: CommandBuffer,
-        batch: int,
-        active: list[tuple[int, int, int, int]],
+        self, buffer: CommandBuffer, active: list[tuple[int, int, int, int]]
     ) -> None:
+        self._convergence.end_batch()
         buffer.bind_framebuffer(self._sum_target)
-        if batch == 0:
-            buffer.clear((0.0, 0.0, 0.0, 0.0))
         self._draw(
             buffer, "accumulate_batch.frag", self._from_batch, _ADD, active
         )
         buffer.bind_framebuffer(self._tile_target)
         self._draw(buffer, "tile_error.frag", self._from_moments, FULLSCREEN)
-        rows, columns = self._convergence.active.shape
+        rows, columns = self._convergence.seen.shape
         self._report = buffer.read_pixels(
             self._tile_target, (0, 0, columns, rows)
         )
@@ -255,12 +256,12 @@ class Progressive:
         self._tile_target = self._framebuffer(
             self._texture("errors of tiles", tiles)
         )
-        running, first = self._uniforms
+        uniforms = self._uniforms
         self._from_frame = self._group(None, radiance_map=self._source)
-        self._from_batch = self._group(running, batch_map=batch)
-        self._from_moments = self._group(running, moment_map=moments)
+        self._from_batch = self._group(uniforms, batch_map=batch)
+        self._from_moments = self._group(uniforms, moment_map=moments)
         self._from_sums = self._group(
-            first, batch_map=batch, sum_map=total, moment_map=moments
+            uniforms, batch_map=batch, sum_map=total, moment_map=moments
         )
 
     def _texture(self, label: str, size: tuple[int, int]) -> Handle:

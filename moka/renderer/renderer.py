@@ -87,9 +87,9 @@ class Renderer:
     With ``shows_stops`` the display has a colour for each stop of luminance
     in the place of what the picture looks like. Only the pixels of ``area``
     (x, y, width, height from the lower left) are drawn, None is all;
-    reference lighting goes on with all of them, so that its samples stay
-    when the area changes. With ``at_centres`` its samples all see the centre
-    of their pixel, as a mode without multisampling does.
+    reference lighting keeps its samples when the area changes. With
+    ``at_centres`` its samples all see the centre of their pixel, as a mode
+    without multisampling does.
     """
 
     def __init__(
@@ -268,6 +268,7 @@ class Renderer:
                 targets,
                 self.settings.sample_budget,
                 self.settings.max_error,
+                self.area,
             )
             if not self.at_centres:
                 view = view.jittered(self._progressive.jitter, self.size)

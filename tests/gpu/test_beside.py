@@ -109,6 +109,63 @@ def test_an_area_is_all_that_is_drawn(
     renderer.close()
 
 
+def completed(
+    renderer: Renderer, scene: Scene, camera: Camera
+) -> tuple[NDArray[np.uint8], int]:
+    """The picture with all its samples, and how many frames it took."""
+    frames = 1
+    found = shown(renderer, scene, camera)
+    while not renderer.is_complete:
+        found = shown(renderer, scene, camera)
+        frames += 1
+    return found, frames
+
+
+def test_reference_lighting_of_an_area_is_a_part_of_the_whole(
+    egl_device: GraphicsDevice, scene: Scene, camera: Camera
+) -> None:
+    size = (128, 96)
+    settings = RenderSettings(ibl="reference", reference_samples=64)
+    renderer = Renderer(egl_device, size, settings)
+    whole, frames = completed(renderer, scene, camera)
+
+    renderer = Renderer(egl_device, size, settings)
+    renderer.area = (64, 0, 64, 96)
+    part, frames_of_part = completed(renderer, scene, camera)
+    np.testing.assert_array_equal(part[:, 64:], whole[:, 64:])
+    assert frames_of_part == frames
+    assert renderer.lighting_statistics["samples_per_pixel"] == 64
+    # Less of it is there already.
+    renderer.area = (96, 0, 32, 96)
+    assert completed(renderer, scene, camera)[1] == 1
+    # More of it takes as many frames again, which leave the rest alone.
+    renderer.area = (20, 0, 108, 96)
+    more, frames_of_more = completed(renderer, scene, camera)
+    assert frames_of_more == frames
+    np.testing.assert_array_equal(more[:, 64:], whole[:, 64:])
+    # Batches of other random numbers.
+    difference = abs(more[:, 20:64].astype(int) - whole[:, 20:64])
+    assert difference.any()
+    assert difference.mean() < 1.0
+    assert (difference.max(axis=2) > 8).mean() < 0.1
+
+
+def test_an_area_that_grows_within_a_batch_begins_it_again(
+    egl_device: GraphicsDevice, scene: Scene, camera: Camera
+) -> None:
+    size = (96, 64)
+    settings = RenderSettings(ibl="reference", reference_samples=64)
+    renderer = Renderer(egl_device, size, settings)
+    whole, frames = completed(renderer, scene, camera)
+    renderer = Renderer(egl_device, size, settings)
+    renderer.area = (32, 0, 64, 64)
+    shown(renderer, scene, camera)
+    renderer.area = None
+    found, frames_of_it = completed(renderer, scene, camera)
+    assert frames_of_it == frames
+    np.testing.assert_array_equal(found, whole)
+
+
 def test_samples_at_centres_have_the_edges_of_a_mode_without_samples(
     egl_device: GraphicsDevice, scene: Scene, camera: Camera
 ) -> None:
