@@ -135,6 +135,8 @@ class Viewer(App):
             # Dear ImGui takes a press and its release in two frames.
             self._settling = min(self._settling + 1, _MOST_FRAMES_TO_SETTLE)
         self.interface.take(event)
+        if isinstance(event, KeyEvent | MouseButtonEvent) and event.pressed:
+            self.message = None  # It has been read.
         if isinstance(event, DropEvent):
             for path in event.paths:
                 self.open(path)
@@ -155,7 +157,7 @@ class Viewer(App):
         self.files.reload()
         self.readbacks.take()
         self.gestures.advance(time.delta)
-        if self._is_animating():
+        if self.is_animating:
             self.draft.note_motion()
         self._settling = max(self._settling - 1, 0)
         if self._goes_on():
@@ -207,7 +209,8 @@ class Viewer(App):
             or self.draft.is_moving
         )
 
-    def _is_animating(self) -> bool:
+    @property
+    def is_animating(self) -> bool:
         """Whether an animation plays."""
         if self.model is None or not self.model.model.animations:
             return False
@@ -291,7 +294,7 @@ class Viewer(App):
         self.request_redraw()
 
     def tell(self, message: str) -> None:
-        """Show a message until something else happens."""
+        """Show a message until a person presses something."""
         self.message = message
         self.request_redraw()
 

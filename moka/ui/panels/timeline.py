@@ -27,10 +27,13 @@ def toggle_playing(viewer: "Viewer") -> None:
     viewer.request_redraw()
 
 
-def draw_timeline(imgui: Any, viewer: "Viewer", area: tuple[int, int]) -> None:
-    """Draw it over the bottom of ``area``, if the model is animated."""
+def draw_timeline(imgui: Any, viewer: "Viewer", area: tuple[int, int]) -> float:
+    """Draw it over the bottom of ``area``, if the model is animated.
+
+    Returns how much of the height it takes.
+    """
     if viewer.model is None or not viewer.model.model.animations:
-        return
+        return 0.0
     player = viewer.model.animations
     current = player.current
     margin = 8
@@ -64,4 +67,6 @@ def draw_timeline(imgui: Any, viewer: "Viewer", area: tuple[int, int]) -> None:
     if time != current.time:
         player.seek(time)
         viewer.request_redraw()
+    height = float(imgui.get_window_height())
     imgui.end()
+    return height + margin
