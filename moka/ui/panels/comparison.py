@@ -25,8 +25,7 @@ class ComparisonPanel(Panel):
         shown = comparison.choice or _NOTHING
         wanted = choice(imgui, "beside", shown, (_NOTHING, *COMPARISONS))
         if wanted != shown:
-            comparison.choice = None if wanted == _NOTHING else wanted
-            viewer.request_redraw()
+            viewer.choices.compare_with(None if wanted == _NOTHING else wanted)
         if comparison.choice is not None:
             imgui.text_disabled("drag the line in the picture")
             self._progress(imgui, viewer)

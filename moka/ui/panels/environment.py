@@ -82,7 +82,7 @@ class LightingPanel(Panel):
         samples = settings.ibl_samples
         if ibl == "filtered":
             _, samples = imgui.slider_int("samples a pixel", samples, 1, 64)
-        viewer.change_settings(
+        viewer.choices.change_settings(
             ibl=ibl,
             brdf=brdf,
             diffuse=diffuse,

@@ -44,7 +44,7 @@ class PicturePanel(Panel):
             tuple(_SAMPLES),
         )
         hint(imgui, "Samples of a pixel: the more, the smoother the edges.")
-        viewer.change_settings(
+        viewer.choices.change_settings(
             exposure=exposure,
             tone_map=tone_map,
             gamma=power if is_power else None,
