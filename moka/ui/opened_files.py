@@ -81,6 +81,7 @@ class OpenedFiles:
                 f"{path}: neither a model ({', '.join(MODEL_SUFFIXES)}) nor "
                 f"an environment ({', '.join(ENVIRONMENT_SUFFIXES)})"
             )
+            viewer.request_redraw()
 
     def open_model(self, source: Any, *, keep_view: bool = False) -> None:
         """Read a model in the background, and show it in place of this one.
