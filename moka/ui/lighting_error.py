@@ -6,7 +6,7 @@ those of docs/accuracy.md, of objects where that has spheres.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from msgspec import Struct
@@ -17,6 +17,7 @@ from moka.commands.command_list import CommandList
 from moka.core.errors import MokaError
 from moka.graphics.device import Frame
 from moka.renderer.convergence import Schedule
+from moka.renderer.light_sources import MadeLighting
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
 from moka.renderer.surface_values import unpack_values
@@ -87,9 +88,10 @@ def lighting_error(
 class ErrorMeasurement:
     """A measurement that goes on a little in each frame of a window.
 
-    It begins with the making; ``beside`` is the renderer of the view, whose
-    ``settings`` are measured. Call :meth:`step` until it ``is_done``; then
-    ``result`` is there, unless nothing was lit. ``progress`` is 0 to 1.
+    ``beside`` is the renderer of the view, whose ``settings`` are measured.
+    Call :meth:`step` until it ``is_done``; then ``result`` is there, unless
+    nothing was lit. ``progress`` is 0 to 1. While it ``waits`` for
+    :meth:`prepare`, which may go before, steps do nothing.
     """
 
     def __init__(
@@ -101,6 +103,15 @@ class ErrorMeasurement:
         self.result: LightingError | None = None
         self.progress = 0.0
         self.is_done = False
+        self.waits = False
+        self._plain = replace(self.measured, samples=1, float_output=True)
+        self._truth = replace(
+            self._plain,
+            ibl="reference",
+            reference_samples=samples,
+            max_error=None,
+        )
+        self._light: dict[str, MadeLighting | None] = {}
         self._scene = scene
         self._camera = _copied(camera)
         self._renderer = Renderer(
@@ -113,9 +124,19 @@ class ErrorMeasurement:
         self._steps = self._measure()
         self._frame: Frame | None = None
 
+    def prepare(self, told: Callable[[int, int], None]) -> None:
+        """Make what lights both pictures; on a thread that may wait.
+
+        See :meth:`moka.renderer.renderer.Renderer.prepare_lighting`.
+        """
+        for settings in (self._plain, self._truth):
+            self._light[settings.ibl] = self._renderer.prepare_lighting(
+                self._scene.environment, self._scene, settings, told
+            )
+
     def step(self) -> None:
         """Go on, if the GPU has done the last step."""
-        if self.is_done:
+        if self.is_done or self.waits:
             return
         if self._frame is not None:
             if not self._frame.is_done:
@@ -128,24 +149,17 @@ class ErrorMeasurement:
 
     def _measure(self) -> Iterator[Frame]:
         names = ("object-id",)
-        plain = replace(self.measured, samples=1, float_output=True)
-        commands = self._drawn(plain)
+        commands = self._drawn(self._plain)
         radiance = self._renderer.read_radiance(commands)
         values = self._renderer.read_values(
             self._scene, self._camera, names, commands
         )
         yield self._submitted(commands)
         objects = unpack_values(names, values)["object-id"]
-        truth = replace(
-            plain,
-            ibl="reference",
-            reference_samples=self._samples,
-            max_error=None,
-        )
         frames = Schedule.of(self._samples).total_frames
         # Begun anew where the scene has changed, but not for ever.
         for number in range(4 * frames):
-            commands = self._drawn(truth)
+            commands = self._drawn(self._truth)
             self.progress = min((number + 1) / frames, 1.0)
             if self._renderer.is_complete:
                 break
@@ -171,6 +185,9 @@ class ErrorMeasurement:
 
     def _drawn(self, settings: RenderSettings) -> CommandList:
         self._renderer.settings = settings
+        made = self._light.pop(settings.ibl, None)
+        if made is not None:
+            self._renderer.adopt_lighting(made)
         commands = CommandList()
         self._renderer.draw(self._scene, self._camera, commands)
         return commands

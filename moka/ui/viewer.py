@@ -14,6 +14,7 @@ in :mod:`moka.ui.layout`, and the command of what is seen in
 """
 
 import os
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -199,7 +200,9 @@ class Viewer(App):
 
     def _goes_on(self) -> bool:
         """Whether the next frame will show something else."""
-        is_measuring = self.measurement and not self.measurement.is_done
+        is_measuring = self.measurement and not (
+            self.measurement.is_done or self.measurement.waits
+        )
         compares = self.debug_view is None and not self.comparison.is_complete
         # After motion the picture is made once more, as it should be.
         return bool(
@@ -287,8 +290,21 @@ class Viewer(App):
 
     def measure_error(self) -> None:
         """Begin to compare the light of this view with reference lighting."""
-        self.measurement = ErrorMeasurement(
+        measurement = ErrorMeasurement(
             self.renderer, self.scene, self.camera, SAMPLES
+        )
+
+        def told(done: int, total: int) -> None:
+            self.work.tell(f"preparing the light: {100 * done // total} %")
+
+        def begin(_: None) -> None:
+            measurement.waits = False
+            self.request_redraw()
+
+        measurement.waits = True
+        self.measurement = measurement
+        self.work.start(
+            "preparing the light", partial(measurement.prepare, told), begin
         )
         self.request_redraw()
 

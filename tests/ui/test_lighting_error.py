@@ -8,6 +8,7 @@ import pytest
 from moka.core.errors import MokaError
 from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import load_environment
+from moka.lighting.lighting_maker import LightingMaker
 from moka.model import demo_model
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
@@ -93,4 +94,29 @@ def test_what_moves_cannot_be_measured(scene: Scene) -> None:
 
         with pytest.raises(MokaError, match="while the scene moves"):
             measure()
+        renderer.close()
+
+
+@pytest.mark.gpu
+def test_light_that_was_prepared_gives_the_same_and_is_not_made_again(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with GraphicsDevice.open("egl", debug=True) as device:
+        renderer = Renderer(device, (60, 40), RenderSettings(suns="off"))
+        expected = measured(renderer, scene).result
+        camera = Camera()
+        camera.frame(scene.bounds(), 1.5, 0.4, 0.2)
+        measurement = ErrorMeasurement(renderer, scene, camera, 16)
+        measurement.waits = True
+        measurement.step()
+        assert measurement.progress == 0.0
+        told: list[tuple[int, int]] = []
+        measurement.prepare(lambda *now: told.append(now))
+        assert told
+        measurement.waits = False
+        monkeypatch.setattr(LightingMaker, "make", None)
+        while not measurement.is_done:
+            measurement.step()
+            time.sleep(0.002)
+        assert measurement.result == expected
         renderer.close()
