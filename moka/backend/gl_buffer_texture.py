@@ -15,9 +15,10 @@ __all__ = ["GlBufferTexture"]
 
 
 class GlBufferTexture:
-    """A GL texture over a buffer of its own, ``width`` texels long.
+    """A GL texture over a buffer, ``width`` texels long.
 
-    What :class:`moka.backend.gl_textures.GlTexture` is to other kinds.
+    What :class:`moka.backend.gl_textures.GlTexture` is to other kinds. The
+    buffer is the GL object ``over``, or its own.
     """
 
     target = c.TEXTURE_BUFFER
@@ -27,25 +28,35 @@ class GlBufferTexture:
         gl: Functions,
         descriptor: TextureDescriptor,
         data: TextureData | None,
+        over: int | None = None,
     ) -> None:
         self._gl = gl
         self.descriptor = descriptor
         channels, dtype = descriptor.format.channels, descriptor.format.dtype
         self._texel = channels * np.dtype(dtype).itemsize
         self.name = gl.make("Textures")
-        self._buffer = gl.make("Buffers")
-        texels = None if not data else np.ascontiguousarray(data[0], dtype)
-        gl.BindBuffer(c.TEXTURE_BUFFER, self._buffer)
+        self._owns_buffer = over is None
+        self._buffer = self._make_buffer(data) if over is None else over
+        gl.ActiveTexture(c.TEXTURE0 + SCRATCH_UNIT)
+        gl.BindTexture(self.target, self.name)
+        internal, _, _ = c.pixel_format(descriptor.format)
+        gl.TexBuffer(self.target, internal, self._buffer)
+
+    def _make_buffer(self, data: TextureData | None) -> int:
+        gl, descriptor = self._gl, self.descriptor
+        texels = None
+        if data:
+            dtype = descriptor.format.dtype
+            texels = np.ascontiguousarray(data[0], dtype)
+        name = gl.make("Buffers")
+        gl.BindBuffer(c.TEXTURE_BUFFER, name)
         gl.BufferData(
             c.TEXTURE_BUFFER,
             descriptor.width * self._texel,
             None if texels is None else texels.ctypes.data,
             c.DYNAMIC_DRAW,
         )
-        gl.ActiveTexture(c.TEXTURE0 + SCRATCH_UNIT)
-        gl.BindTexture(self.target, self.name)
-        internal, _, _ = c.pixel_format(descriptor.format)
-        gl.TexBuffer(self.target, internal, self._buffer)
+        return name
 
     def write(self, data: bytes, first: int) -> None:
         """Replace the texels from number ``first`` on."""
@@ -68,4 +79,5 @@ class GlBufferTexture:
     def release(self) -> None:
         """Delete the GL objects."""
         self._gl.delete("Textures", self.name)
-        self._gl.delete("Buffers", self._buffer)
+        if self._owns_buffer:
+            self._gl.delete("Buffers", self._buffer)

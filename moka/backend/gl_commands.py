@@ -1,7 +1,7 @@
 """Executes the rare commands: what sets up and ends passes."""
 
 from collections.abc import Callable
-from ctypes import byref, c_float
+from ctypes import byref, c_float, c_uint
 from typing import TYPE_CHECKING, Any
 
 from moka.backend import gl_constants as c
@@ -116,9 +116,14 @@ class CommandRunner:
     ) -> None:
         self._state.write_masks(colour=True, depth=True)
         if colour is not None:
-            values = (c_float * 4)(*colour)
-            count = self._target.colour_count if self._target else 1
-            for attachment in range(count):
+            target = self._target
+            integers = target.holds_integers if target else (False,)
+            for attachment, is_integer in enumerate(integers):
+                if is_integer:
+                    numbers = (c_uint * 4)(*map(int, colour))
+                    self._gl.ClearBufferuiv(c.COLOR, attachment, byref(numbers))
+                    continue
+                values = (c_float * 4)(*colour)
                 self._gl.ClearBufferfv(c.COLOR, attachment, byref(values))
         if depth is not None:
             self._gl.ClearBufferfv(c.DEPTH, 0, byref(c_float(depth)))

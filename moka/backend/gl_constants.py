@@ -147,7 +147,7 @@ MINIFY = {
 
 _RED, _RG, _RGB, _RGBA = 0x1903, 0x8227, 0x1907, 0x1908
 _BY_CHANNELS = {1: _RED, 2: _RG, 3: _RGB, 4: _RGBA}
-_RED_INTEGER = 0x8D94
+_INTEGER_BY_CHANNELS = {1: 0x8D94, 4: 0x8D99}
 #: By NumPy's type codes, of texels and of vertex attributes.
 COMPONENT_TYPE = {
     "i1": BYTE,
@@ -177,7 +177,9 @@ _INTERNAL = {
     PixelFormat.RG32F: 0x8230,
     PixelFormat.RGB32F: 0x8815,
     PixelFormat.RGBA32F: 0x8814,
+    PixelFormat.R16UI: 0x8234,
     PixelFormat.R32UI: 0x8236,
+    PixelFormat.RGBA32UI: 0x8D70,
     PixelFormat.DEPTH24: 0x81A6,
     PixelFormat.DEPTH32F: 0x8CAC,
     PixelFormat.BC1: 0x83F0,
@@ -208,13 +210,13 @@ def transfer_format(pixels: PixelFormat) -> int:
     """Which channels host memory holds."""
     if pixels.is_depth:
         return DEPTH_COMPONENT
-    if pixels is PixelFormat.R32UI:
-        return _RED_INTEGER
+    if pixels.is_integer:
+        return _INTEGER_BY_CHANNELS[pixels.channels]
     return _BY_CHANNELS[pixels.channels]
 
 
 def readback_format(channels: int, dtype: str) -> tuple[int, int]:
     """Transfer format and type of pixels read from a framebuffer."""
     if dtype == "u4":
-        return _RED_INTEGER, UNSIGNED_INT
+        return _INTEGER_BY_CHANNELS[channels], UNSIGNED_INT
     return _BY_CHANNELS[channels], COMPONENT_TYPE[dtype]

@@ -54,6 +54,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "BufferSubData": (None, _UINT, _SIZE, _SIZE, _POINTER),
     "CheckFramebufferStatus": (_UINT, _UINT),
     "ClearBufferfv": (None, _UINT, _INT, _POINTER),
+    "ClearBufferuiv": (None, _UINT, _INT, _POINTER),
     "ClipControl": (None, _UINT, _UINT),
     "ClientWaitSync": (_UINT, _POINTER, _UINT, c_uint64),
     "ColorMask": (None, _BOOL, _BOOL, _BOOL, _BOOL),

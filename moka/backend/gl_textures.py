@@ -216,6 +216,11 @@ class GlFramebuffer:
     ) -> None:
         self._gl = gl
         self.colour_count = len(descriptor.colour)
+        #: Of each colour attachment, whether it holds whole numbers.
+        self.holds_integers = tuple(
+            texture_of(item.texture).descriptor.format.is_integer
+            for item in descriptor.colour
+        )
         attached = [
             _Attached(texture_of(item.texture), item)
             for item in (*descriptor.colour, descriptor.depth)

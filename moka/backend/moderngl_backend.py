@@ -157,10 +157,10 @@ class ModernGLBackend:
         data: TextureData | None,
     ) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
-        kind: type[GlTexture | GlBufferTexture] = GlTexture
+        is_buffer = descriptor.kind is TextureKind.BUFFER
         largest = self.info.max_texture_size
-        if descriptor.kind is TextureKind.BUFFER:
-            kind, largest = GlBufferTexture, self.info.max_buffer_texels
+        if is_buffer:
+            largest = self.info.max_buffer_texels
         if max(descriptor.width, descriptor.height) > largest:
             raise DeviceError(
                 f"texture {descriptor.label}: {descriptor.width}x"
@@ -168,7 +168,18 @@ class ModernGLBackend:
                 f"{largest}"
             )
         with self._timed("upload"):
-            self._put(handle, kind(self._gl, descriptor, data))
+            texture: GlTexture | GlBufferTexture
+            if is_buffer:
+                over = descriptor.over
+                texture = GlBufferTexture(
+                    self._gl,
+                    descriptor,
+                    data,
+                    None if over is None else self._get(over).glo,
+                )
+            else:
+                texture = GlTexture(self._gl, descriptor, data)
+            self._put(handle, texture)
         self._uploaded += sum(level.nbytes for level in data or ())
         self._check_errors(f"texture {descriptor.label}")
 

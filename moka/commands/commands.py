@@ -87,10 +87,7 @@ class GenerateMipmaps(Struct, frozen=True):
 
 
 class ResolveFramebuffer(Struct, frozen=True):
-    """Average the samples of ``source`` into ``target`` of equal size.
-
-    Of one sample this is a copy.
-    """
+    """Average the samples of ``source`` into ``target`` of equal size."""
 
     source: Handle
     target: Handle

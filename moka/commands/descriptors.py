@@ -80,7 +80,9 @@ class PixelFormat(Enum):
     RG32F = "rg32f"
     RGB32F = "rgb32f"
     RGBA32F = "rgba32f"
+    R16UI = "r16ui"
     R32UI = "r32ui"
+    RGBA32UI = "rgba32ui"
     DEPTH24 = "depth24"
     DEPTH32F = "depth32f"
     BC1 = "bc1"
@@ -100,6 +102,11 @@ class PixelFormat(Enum):
     def is_depth(self) -> bool:
         """Whether texels are depths and not colours."""
         return self in (PixelFormat.DEPTH24, PixelFormat.DEPTH32F)
+
+    @property
+    def is_integer(self) -> bool:
+        """Whether shaders read whole numbers and not what they stand for."""
+        return self.value.endswith("ui")
 
     @property
     def block_bytes(self) -> int:
@@ -130,7 +137,7 @@ class PixelFormat(Enum):
             return "f4"
         if name.endswith("32ui"):
             return "u4"
-        return "u2" if name.endswith("16") else "u1"
+        return "u2" if name.endswith(("16", "16ui")) else "u1"
 
 
 class TextureKind(Enum):
@@ -145,7 +152,8 @@ class TextureKind(Enum):
 class TextureDescriptor(Struct, frozen=True):
     """A texture of ``levels`` mip levels (0 means the whole chain).
 
-    A buffer texture has one level and one row of ``width`` texels. With
+    A buffer texture has one level and one row of ``width`` texels, which are
+    those of the buffer ``over`` or else of one of its own. With
     ``samples`` > 1 it has one level and is only written by draws; shaders
     read it as ``sampler2DMS``.
     """
@@ -157,6 +165,7 @@ class TextureDescriptor(Struct, frozen=True):
     levels: int = 1
     samples: int = 1
     label: str = ""
+    over: Handle | None = None
 
     @property
     def level_count(self) -> int:

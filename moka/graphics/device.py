@@ -220,6 +220,8 @@ class GraphicsDevice:
         Arrays are (height, width, channels), for cube maps (6, size, size,
         channels), and must not change until they have been uploaded.
         """
+        if descriptor.over is not None:
+            self._handles.check(descriptor.over, ResourceKind.BUFFER)
         handle = self._handles.allocate(ResourceKind.TEXTURE)
         self._thread.post(
             lambda backend: backend.create_texture(handle, descriptor, data)

@@ -5,7 +5,11 @@ import pytest
 
 from moka.commands.command_list import CommandList
 from moka.commands.descriptors import (
+    Attachment,
     BindGroupDescriptor,
+    BufferDescriptor,
+    BufferUsage,
+    FramebufferDescriptor,
     PixelFormat,
     ProgramDescriptor,
     ShaderText,
@@ -82,6 +86,51 @@ def test_texels_are_read_by_number_and_written_from_a_place_on(
     expected = second[first[:, 1].astype(int), 0]
     assert drawn(commands) == expected.tolist()
     assert np.array_equal(device.read_texture(textures[1])[0], second)
+
+
+def test_one_over_a_buffer_reads_what_draws_read(
+    device: GraphicsDevice,
+) -> None:
+    numbers = np.arange(12, dtype=np.uint16)
+    buffer = device.create_buffer(
+        BufferDescriptor(BufferUsage.INDEX, numbers.nbytes), numbers
+    )
+    view = device.create_texture(
+        TextureDescriptor(
+            PixelFormat.R16UI, 12, 1, TextureKind.BUFFER, over=buffer
+        )
+    )
+    read = device.read_texture(view)
+    assert read.dtype == np.uint16
+    assert read.ravel().tolist() == list(range(12))
+    device.destroy(view)
+    # The buffer is still there.
+    again = device.create_texture(
+        TextureDescriptor(
+            PixelFormat.R16UI, 12, 1, TextureKind.BUFFER, over=buffer
+        )
+    )
+    np.testing.assert_array_equal(device.read_texture(again), read)
+    device.destroy(again, buffer)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_targets_of_whole_numbers_are_cleared_to_them(
+    device: GraphicsDevice, samples: int
+) -> None:
+    numbers = device.create_texture(
+        TextureDescriptor(PixelFormat.R32UI, 4, 4, samples=samples)
+    )
+    target = device.create_framebuffer(
+        FramebufferDescriptor((Attachment(numbers),))
+    )
+    commands = CommandList()
+    commands.bind_framebuffer(target)
+    commands.clear((70000, 0, 0, 0))
+    device.submit(commands).wait()
+    if samples == 1:
+        assert (device.read_texture(numbers) == 70000).all()
+    device.finish()
 
 
 def test_one_that_is_too_long_is_an_error() -> None:
