@@ -60,6 +60,11 @@ class Parameter(Struct, frozen=True):
     type: ParameterType
     count: int = 0
 
+    def declaration(self, prefix: str = "") -> str:
+        """Its GLSL, without a semicolon."""
+        array = f"[{self.count}]" if self.count else ""
+        return f"{self.type.glsl} {prefix}{self.name}{array}"
+
 
 class UniformLayout(Struct, frozen=True, dict=True):
     """The parameters of a uniform block, or of one row of an array of them.
@@ -105,9 +110,7 @@ class UniformLayout(Struct, frozen=True, dict=True):
     def glsl(self) -> str:
         """The declaration of the block, to be injected into a shader."""
         members = "\n".join(
-            f"    {parameter.type.glsl} {parameter.name}"
-            f"{f'[{parameter.count}]' if parameter.count else ''};"
-            for parameter in self.parameters
+            f"    {parameter.declaration()};" for parameter in self.parameters
         )
         if not self.rows:
             return f"layout(std140) uniform {self.name} {{\n{members}\n}};\n"
@@ -116,6 +119,34 @@ class UniformLayout(Struct, frozen=True, dict=True):
             f"struct {self.name}Row {{\n{members}\n}};\n"
             f"layout(std140) uniform {self.name} {{\n"
             f"    {self.name}Row {variable}[{self.rows}];\n}};\n"
+        )
+
+    @cached_property
+    def flat_outputs(self) -> str:
+        """What lets a vertex shader copy a block to flat outputs.
+
+        Injected after :attr:`glsl`; ``copy_name()`` does it.
+        """
+        outputs = "".join(
+            f"flat out {parameter.declaration('flat_')};\n"
+            for parameter in self.parameters
+        )
+        copies = "".join(
+            f"    flat_{parameter.name} = {parameter.name};\n"
+            for parameter in self.parameters
+        )
+        return f"{outputs}void copy_{self.name.lower()}() {{\n{copies}}}\n"
+
+    @cached_property
+    def flat_inputs(self) -> str:
+        """What lets a fragment shader read these copies by their own names.
+
+        Injected in the place of :attr:`glsl`.
+        """
+        return "".join(
+            f"flat in {parameter.declaration('flat_')};\n"
+            f"#define {parameter.name} flat_{parameter.name}\n"
+            for parameter in self.parameters
         )
 
     def pack(self, values: Mapping[str, Any]) -> NDArray[np.void]:

@@ -71,6 +71,14 @@ def test_the_declaration_names_everything() -> None:
     assert rows.size == 128
 
 
+def test_copies_are_read_by_their_own_names() -> None:
+    assert EXAMPLE.flat_outputs.count("flat out ") == len(EXAMPLE.parameters)
+    assert "flat out float flat_e[2];" in EXAMPLE.flat_outputs
+    assert "void copy_example() {" in EXAMPLE.flat_outputs
+    assert "    flat_h = h;" in EXAMPLE.flat_outputs
+    assert "flat in mat4 flat_h;\n#define h flat_h\n" in EXAMPLE.flat_inputs
+
+
 def test_what_float32_cannot_hold_becomes_the_largest_it_can() -> None:
     row = EXAMPLE.pack({"c": (1e300, -np.inf, 1.0)})
     largest = np.finfo(np.float32).max
