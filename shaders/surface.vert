@@ -1,6 +1,7 @@
 // Vertices of a model's surface. The block Frame is injected.
 
 #include "include/instance.glsl"
+#include "include/vertex_colour.glsl"
 #include "include/morph.glsl"
 #include "include/skin.glsl"
 #include "include/line.glsl"
@@ -91,10 +92,7 @@ void main() {
 #ifdef MOKA_MORPH_COLOUR
     colour += morphed[MOKA_MORPH_COLOUR];
 #endif
-    // A part of light: glTF 2.0 keeps it within 0..1, files do not. NaN is
-    // not greater than 0.
-    surface_colour = mix(
-        vec4(0.0), min(colour, 1.0), greaterThan(colour, vec4(0.0)));
+    surface_colour = part_of_light(colour);
 #endif
     gl_Position = clip_from_world * vec4(surface_position, 1.0);
 #ifdef MOKA_LINES

@@ -75,6 +75,7 @@ def _add_settings(add: Any, settings: RenderSettings) -> None:
     add("mip-filter", settings.mip_filter, plain.mip_filter)
     add("max-texture-size", settings.max_texture_size, None)
     add("specular-aa", "on" if settings.specular_aa else "off", "off")
+    add("shading", settings.shading, plain.shading)
     add("cull-pixels", _number(settings.cull_pixels), "0.5")
     add("ibl", settings.ibl, plain.ibl)
     if settings.ibl == "reference":

@@ -47,6 +47,7 @@ def render(
     max_texture_size: int | None = None,
     specular_aa: bool = False,
     cull_pixels: float = 0.5,
+    shading: str = "auto",
     aov: str | Sequence[str] = (),
     full_textures: bool = False,
     backend: str = "auto",
@@ -97,7 +98,10 @@ def render(
     ``mip_filter`` ``linear`` or ``nearest``, whether two levels of it are
     mixed or one is read, ``max_texture_size`` the most texels along a side
     that it keeps. ``specular_aa`` makes surfaces as rough as the bumps of
-    normal maps that a pixel averages (after Toksvig 2005). Without
+    normal maps that a pixel averages (after Toksvig 2005). ``shading`` is
+    ``forward``, as surfaces are drawn, ``visibility``, each pixel once when
+    it is known what it sees (Burns and Hunt 2013), where the scene allows
+    it, or ``auto``, what is faster. Without
     ``full_textures`` mip levels that are too fine for the picture are left
     out. With ``cache`` lighting that was preintegrated before is read from
     disk, and new one is written there; the picture is the same.
@@ -141,6 +145,7 @@ def render(
         max_texture_size=max_texture_size,
         specular_aa=specular_aa,
         cull_pixels=cull_pixels,
+        shading=shading,
         aov=aov,
         full_textures=full_textures,
         backend=backend,

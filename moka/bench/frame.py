@@ -39,6 +39,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="how far the camera goes around in a frame (default: 1)",
     )
     parser.add_argument(
+        "--shading",
+        metavar="WHEN",
+        default="auto",
+        help="forward, visibility or auto, as in moka render (default: auto)",
+    )
+    parser.add_argument(
         "--against",
         metavar="COMMAND",
         help="take turns, frame by frame, with a program that draws one for "
@@ -136,7 +142,9 @@ def _measure(
     camera = Camera()
     width, height = arguments.size
     step = math.radians(arguments.yaw_per_frame)
-    settings = RenderSettings(samples=arguments.samples)
+    settings = RenderSettings(
+        samples=arguments.samples, shading=arguments.shading
+    )
     with ExitStack() as stack:
         between = None
         if arguments.against:

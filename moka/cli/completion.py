@@ -54,6 +54,7 @@ def _values() -> dict[str, tuple[str, ...]]:
         "mip_filter": settings.MIP_FILTERS,
         "quality": tuple(quality.QUALITIES),
         "reflections": settings.REFLECTIONS,
+        "shading": settings.SHADINGS,
         "tone_map": settings.TONE_MAPS,
     }
 

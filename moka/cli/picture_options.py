@@ -221,6 +221,14 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
         "reads one (default: linear)",
     )
     add(
+        "--shading",
+        metavar="WHEN",
+        default="auto",
+        help="shade surfaces as they are drawn (forward), or each pixel once "
+        "when it is known what it sees (visibility, where the scene allows "
+        "it); auto takes what is faster (default: auto)",
+    )
+    add(
         "--max-texture-size",
         metavar="N",
         type=count,
@@ -264,6 +272,7 @@ def picture_request(
         mip_filter=arguments.mip_filter,
         max_texture_size=arguments.max_texture_size,
         specular_aa=arguments.specular_aa == "on",
+        shading=arguments.shading,
         float_output=float_output,
     )
     _check_lighting(arguments, settings.ibl)

@@ -48,6 +48,8 @@ FRAME = UniformLayout(
         # Of reference lighting: x the first sample of the frame, y how many,
         # z the number of the batch.
         Parameter("sample_range", ParameterType.IVEC4),
+        # Of numbers in a visibility buffer, those that count triangles.
+        Parameter("triangle_bits", ParameterType.INT),
     ),
 )
 
@@ -61,6 +63,7 @@ def frame_values(
     specular_levels: int,
     light_count: int,
     sample_range: tuple[int, int, int, int],
+    triangle_bits: int = 0,
 ) -> NDArray[np.void]:
     """The block for ``scene`` seen by ``view`` in a picture of ``size``.
 
@@ -85,5 +88,6 @@ def frame_values(
             "point_size": max(1.0, height * _POINT_SIZE),
             "depth_range": view.depth_range or (0.0, 0.0, 0.0),
             "sample_range": sample_range,
+            "triangle_bits": triangle_bits,
         }
     )

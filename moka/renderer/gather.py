@@ -42,10 +42,17 @@ class DrawGatherer:
         prepared: PreparedScene,
         pass_: int,
         poses: NDArray[np.uint32] | None = None,
+        places: NDArray[np.uint32] | None = None,
+        triangle_bits: int = 0,
     ) -> None:
         """``pass_`` is the frame's pass that the draws belong to.
 
         ``poses`` (D, 2) are the places of draws in the pose texture.
+        ``places`` (P, 2), for a visibility buffer, are of the prepared
+        scene's primitives what is added to their indices and where these
+        begin. Instances then tell the first in the place of the object, and
+        to spare their row, shifted by ``triangle_bits``, and the second with
+        its highest bit set where they are mirrored.
         """
         self._drawables = drawables
         rows = prepared.rows[drawables.primitive]
@@ -64,6 +71,12 @@ class DrawGatherer:
         self._instances["object"] = drawables.object
         if poses is not None:
             self._instances["spare"] = poses
+        self._triangle_bits = np.uint32(triangle_bits)
+        if places is not None:
+            base_vertex, first = places[drawables.primitive].T
+            mirrored = drawables.mirrored.astype(np.uint32)
+            self._instances["object"] = base_vertex
+            self._instances["spare"][:, 1] = first | mirrored << np.uint32(31)
         self._positions = np.zeros((3, count))
         self._version = -1
         self._sorted: _Sorted | None = None
@@ -135,13 +148,18 @@ class DrawGatherer:
         draws["key"] = placed[order]
         draws["state"] = states[self._state[rows] + drawables.mirrored[rows]]
         draws["first_instance"] = np.arange(len(rows))
+        instances = self._instances.take(rows)
+        if self._triangle_bits:
+            instances["spare"][:, 0] = (
+                draws["first_instance"] << self._triangle_bits
+            )
         return _Sorted(
             visible,
             states,
             view,
             _middle(depth),
             draws,
-            self._instances.take(rows),
+            instances,
             self._positions.take(rows, axis=1),
             # What is blended must be in its exact order.
             lasts=blended is None or not len(blended),

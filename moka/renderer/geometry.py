@@ -32,7 +32,7 @@ from moka.renderer.vertices import (
     vertices_of,
 )
 
-__all__ = ["GeometryPool", "Upload"]
+__all__ = ["GeometryPool", "JoinedMeshes", "Upload", "vertex_layout"]
 
 # glTF attribute: shader input, components. All are float32 on the GPU.
 _ATTRIBUTES = {
@@ -59,8 +59,21 @@ class Upload(Struct):
     """Meshes that share buffers, and where their vertices begin."""
 
     meshes: dict[_Key, Handle]
-    base_vertices: dict[_Key, int]
+    descriptors: dict[_Key, MeshDescriptor]
     buffers: list[Handle]
+    vertices: int
+    indices: int
+
+
+class JoinedMeshes(Struct, frozen=True, eq=False):
+    """Meshes of one pair of buffers, which hold ``vertices`` and ``indices``.
+
+    ``members`` are in the order that they were asked for.
+    """
+
+    members: list[MeshDescriptor]
+    vertices: int
+    indices: int
 
 
 # A primitive, and the attributes of it that are uploaded.
@@ -129,13 +142,47 @@ class GeometryPool:
 
         What :meth:`meshes` was last asked for.
         """
-        key = _Key(primitive.geometry, wanted)
-        (begin,) = (
-            upload.base_vertices[key]
-            for upload in self._uploads
-            if key in upload.base_vertices
+        (upload,) = self._uploads_of([(primitive, wanted)])
+        return upload.descriptors[_key((primitive, wanted))].base_vertex
+
+    def joins(self, wanted: Sequence[Wanted]) -> bool:
+        """Whether their meshes have, or will have, one pair of buffers.
+
+        Those of one layout do that are uploaded together, all of them with
+        indices.
+        """
+        uploads = self._uploads_of(wanted)
+        if not uploads:
+            return all(
+                primitive.indices is not None
+                or not attributes.isdisjoint(MADE_TANGENTS)
+                for primitive, attributes in (
+                    (each[0], frozenset(each[1])) for each in wanted
+                )
+            )
+        (first, *others) = uploads
+        return (
+            not others
+            and first.indices > 0
+            and all(_key(each) in first.meshes for each in wanted)
         )
-        return begin
+
+    def joined(self, wanted: Sequence[Wanted]) -> JoinedMeshes:
+        """The meshes of ``wanted``, which :meth:`joins`, after the upload."""
+        (upload,) = self._uploads_of(wanted)
+        return JoinedMeshes(
+            [upload.descriptors[_key(each)] for each in wanted],
+            upload.vertices,
+            upload.indices,
+        )
+
+    def _uploads_of(self, wanted: Sequence[Wanted]) -> list[Upload]:
+        keys = {_key(each) for each in wanted}
+        return [
+            upload
+            for upload in self._uploads
+            if not keys.isdisjoint(upload.meshes)
+        ]
 
     def _free(self, upload: Upload) -> None:
         for key in upload.meshes:
@@ -190,27 +237,25 @@ def _upload(device: GraphicsDevice, members: Mapping[_Key, Vertices]) -> Upload:
         )
         index_buffer = _buffer(device, BufferUsage.INDEX, joined)
         buffers.append(index_buffer)
-    meshes, base_vertices = {}, {}
+    meshes, descriptors = {}, {}
     base_vertex = first = 0
     for key, vertices in members.items():
-        base_vertices[key] = base_vertex
         order = vertices.indices
         count = vertices.count if order is None else len(order)
-        meshes[key] = device.create_mesh(
-            MeshDescriptor(
-                vertices.topology,
-                count,
-                first,
-                base_vertex,
-                vertex_buffer,
-                layout,
-                index_buffer,
-                index_type,
-            )
+        descriptors[key] = MeshDescriptor(
+            vertices.topology,
+            count,
+            first,
+            base_vertex,
+            vertex_buffer,
+            layout,
+            index_buffer,
+            index_type,
         )
+        meshes[key] = device.create_mesh(descriptors[key])
         base_vertex += vertices.count
         first += count if indices else 0
-    return Upload(meshes, base_vertices, buffers)
+    return Upload(meshes, descriptors, buffers, base_vertex, first)
 
 
 def _interleave(

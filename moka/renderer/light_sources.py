@@ -169,16 +169,13 @@ class LightSources:
 
     def prepare(
         self, environment: Environment | None, needs: MapNeeds, told: "Told"
-    ) -> MadeLighting | None:
+    ) -> MadeLighting:
         """Make lighting for :meth:`adopt`, and write it to the disk cache.
 
-        None if it is there. On a thread that may wait, while others draw;
-        see :func:`moka.lighting.make_lighting.make_lighting`.
+        On a thread that may wait, while others draw; see
+        :func:`moka.lighting.make_lighting.make_lighting`.
         """
-        request = needs.request(environment)
-        if self._made.serves(request, needs.ibl):
-            return None
-        made = self._make(request, needs.ibl, told)
+        made = self._make(needs.request(environment), needs.ibl, told)
         self._maker.keep()
         return made
 

@@ -22,6 +22,7 @@ __all__ = [
     "Permutation",
     "lights_layout",
     "materials_layout",
+    "visibility_program",
 ]
 
 # A uniform block of 16 KiB is what every driver has.
@@ -65,7 +66,9 @@ class LightingDescription(Struct, frozen=True):
     which are white and reflect nothing else. What the target wants stands here
     too: ``float_target``, ``logarithmic_depth``, and the groups of
     ``values`` that are drawn in the place of radiance, which
-    :mod:`moka.renderer.surface_values` names.
+    :mod:`moka.renderer.surface_values` names; ``visibility`` is how many
+    samples of a pixel a visibility buffer has, 0 where surfaces are shaded as
+    they are drawn.
     """
 
     environment: bool
@@ -81,6 +84,7 @@ class LightingDescription(Struct, frozen=True):
     turned: bool = True
     part: str = "all"
     values: tuple[str, ...] = ()
+    visibility: int = 0
 
     def defines(self, features: Feature) -> dict[str, int]:
         """The defines for a material with ``features``."""
@@ -155,17 +159,36 @@ class Permutation(Struct, frozen=True):
             **defines_of(self.material),
             **self.lighting.defines(features),
         }
-        blocks = FRAME.glsl
+        vertex_name, kind = "surface.vert", "surface"
+        vertex_blocks = blocks = FRAME.glsl
+        if self.lighting.visibility:
+            from moka.renderer.visible_geometry import visible_defines
+
+            vertex_name, kind = "visible_surface.vert", "visible_surface"
+            defines["MOKA_VISIBILITY"] = self.lighting.visibility
+            defines |= visible_defines(self.material.attributes)
+            vertex_blocks += FRAME.flat_outputs
+            blocks = FRAME.flat_inputs
+        elif self.lighting.values:
+            kind = "surface_values"
         blocks += materials_layout(self.row_parts).glsl
         if "MOKA_PUNCTUAL_LIGHTS" in defines:
             blocks += lights_layout(self.lighting.light_capacity).glsl
         names = " ".join(name.removeprefix("MOKA_") for name in defines)
-        kind = "surface_values" if self.lighting.values else "surface"
         return ProgramDescriptor(
-            load_shader("surface.vert", defines, injected=FRAME.glsl),
+            load_shader(vertex_name, defines, injected=vertex_blocks),
             load_shader(f"{kind}.frag", defines, injected=blocks),
             f"{kind} ({names})",
         )
+
+
+def visibility_program() -> ProgramDescriptor:
+    """The sources that note which triangle is seen, of any material."""
+    return ProgramDescriptor(
+        load_shader("visibility.vert", injected=FRAME.glsl),
+        load_shader("visibility.frag"),
+        "visibility",
+    )
 
 
 def _macro(option: str) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 
 from moka.commands.command_buffer import CommandBuffer
 from moka.commands.descriptors import (
@@ -21,6 +22,7 @@ from moka.commands.descriptors import (
     UniformBinding,
 )
 from moka.commands.handles import Handle
+from moka.core.errors import DeviceError
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
 from moka.lighting.brdf_table import TABLE_SAMPLER
@@ -35,20 +37,26 @@ from moka.material.description import (
 )
 from moka.material.material import Texture
 from moka.model.mesh import Primitive
-from moka.renderer.geometry import GeometryPool
+from moka.renderer.geometry import GeometryPool, JoinedMeshes
 from moka.renderer.material_table import MaterialTable
-from moka.renderer.permutation import LightingDescription, Permutation
+from moka.renderer.permutation import (
+    LightingDescription,
+    Permutation,
+    visibility_program,
+)
 from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.texture_request import TextureRequest
 from moka.renderer.textures import TexturePool
 
 if TYPE_CHECKING:
+    from moka.renderer.visible_geometry import VisibleGeometry
     from moka.scene.live_materials import LiveMaterials
 
 __all__ = [
     "LAYER_BACKGROUND",
     "PreparedScene",
     "SharedBindings",
+    "VisibleSurface",
 ]
 
 # The frame's order within the scene pass.
@@ -82,10 +90,25 @@ class SharedBindings(Struct, frozen=True):
     poses: tuple[TextureBinding, ...] = ()
 
 
+class VisibleSurface(Struct, frozen=True, eq=False):
+    """What shades the pixels that a visibility buffer has of a scene.
+
+    ``places`` (P, 2) are, of each primitive, what is added to its indices and
+    where they begin; ``triangle_bits`` count the triangles of the largest.
+    """
+
+    program: Handle
+    bindings: BindGroupDescriptor
+    places: NDArray[np.uint32]
+    triangle_bits: int
+
+
 class PreparedScene:
     """Rows of what each primitive binds; owns bind groups and pages.
 
-    The rows of primitives that the materials leave out stay empty.
+    The rows of primitives that the materials leave out stay empty. Where the
+    lighting asks for a visibility buffer, rows only note what is seen, and
+    ``visible_surface`` shades it; all materials are of one permutation then.
     """
 
     def __init__(
@@ -109,14 +132,17 @@ class PreparedScene:
             programs.get(permutation, permutation.program)
             for permutation in permutations
         ]
-        meshes = geometry.meshes(
-            [
-                (primitives[position], description.attributes)
-                for position, description in zip(
-                    materials.drawn, materials.descriptions, strict=True
-                )
-            ]
-        )
+        drawn = surfaces
+        if lighting.visibility:
+            seen = programs.get(visibility_program, visibility_program)
+            drawn = [seen] * len(surfaces)
+        wanted = [
+            (primitives[position], description.attributes)
+            for position, description in zip(
+                materials.drawn, materials.descriptions, strict=True
+            )
+        ]
+        meshes = geometry.meshes(wanted)
         self._table = MaterialTable(
             device,
             [
@@ -128,12 +154,13 @@ class PreparedScene:
         )
         self._groups: dict[BindGroupDescriptor, Handle] = {}
         self.states: list[RasterState] = []
+        visible: list[BindGroupDescriptor] = []
         self.rows = np.zeros(len(primitives), _ROW)
         is_reversed = device.info.clip_control
         for index, permutation in enumerate(permutations):
             material = materials.materials[index]
             place = self._table.place(material, permutation.row_parts)
-            group = self._bind_group(
+            bindings = self._bindings(
                 permutation,
                 materials.requests[index],
                 materials.textures[index],
@@ -141,9 +168,15 @@ class PreparedScene:
                 shared,
                 textures,
             )
+            if lighting.visibility:
+                visible.append(bindings)
+                bindings = BindGroupDescriptor(
+                    uniforms=(UniformBinding("Frame", shared.frame),)
+                )
+            group = self._group(bindings)
             description = permutation.material
             self.rows[materials.drawn[index]] = (
-                surfaces[index].index,
+                drawn[index].index,
                 group.index,
                 meshes[index].index,
                 self._state(description, is_reversed=is_reversed),
@@ -151,7 +184,15 @@ class PreparedScene:
                 _layer(description),
                 description.is_blended,
             )
-        self.handles = frozenset((*surfaces, *meshes, *self._groups.values()))
+        self.visible_surface: VisibleSurface | None = None
+        self._visible_geometry: VisibleGeometry | None = None
+        if visible:
+            self._see(
+                visible, surfaces[0], materials.drawn, geometry.joined(wanted)
+            )
+        self.handles = frozenset(
+            (*surfaces, *drawn, *meshes, *self._groups.values())
+        )
         self.program_count = len(set(surfaces))
         self.permutation_count = len(set(permutations))
         self.is_lit = materials.has_lit
@@ -173,8 +214,39 @@ class PreparedScene:
         self._device.destroy(*self._groups.values())
         self._groups.clear()
         self._table.destroy()
+        if self._visible_geometry is not None:
+            self._visible_geometry.destroy()
 
-    def _bind_group(
+    def _see(
+        self,
+        bindings: Sequence[BindGroupDescriptor],
+        program: Handle,
+        drawn: Sequence[int],
+        meshes: JoinedMeshes,
+    ) -> None:
+        """Have what shades a visibility buffer."""
+        from moka.renderer.visible_geometry import VisibleGeometry
+
+        if any(each != bindings[0] for each in bindings):
+            raise DeviceError(
+                "visibility buffer: surfaces bind different things"
+            )
+        geometry = VisibleGeometry(self._device, meshes)
+        self._visible_geometry = geometry
+        places = np.zeros((len(self.rows), 2), np.uint32)
+        places[list(drawn), 0] = geometry.base_vertex
+        places[list(drawn), 1] = geometry.first
+        self.visible_surface = VisibleSurface(
+            program,
+            BindGroupDescriptor(
+                (*bindings[0].textures, *geometry.bindings),
+                bindings[0].uniforms,
+            ),
+            places,
+            geometry.triangle_bits,
+        )
+
+    def _bindings(
         self,
         permutation: Permutation,
         requests: dict[str, TextureRequest],
@@ -182,7 +254,7 @@ class PreparedScene:
         page: Handle,
         shared: SharedBindings,
         textures: TexturePool,
-    ) -> Handle:
+    ) -> BindGroupDescriptor:
         bound = [
             TextureBinding(
                 f"{slot}_texture",
@@ -214,7 +286,9 @@ class PreparedScene:
                 uniforms.append(UniformBinding("Lights", shared.lights))
         if permutation.material.deforms:
             bound += shared.poses
-        descriptor = BindGroupDescriptor(tuple(bound), tuple(uniforms))
+        return BindGroupDescriptor(tuple(bound), tuple(uniforms))
+
+    def _group(self, descriptor: BindGroupDescriptor) -> Handle:
         if descriptor not in self._groups:
             group = self._device.create_bind_group(descriptor)
             self._groups[descriptor] = group

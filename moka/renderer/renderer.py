@@ -50,6 +50,7 @@ from moka.renderer.settings import RenderSettings
 from moka.renderer.sky_map import SkyMap
 from moka.renderer.targets import Targets
 from moka.renderer.view import View, look_through
+from moka.renderer.visibility_choice import VisibilityChoice
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
 
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     from moka.renderer.debug_view import DebugPass
     from moka.renderer.geometry import Upload
     from moka.renderer.surface_values import SurfaceValues, ValueTargets
+    from moka.renderer.visibility_buffer import VisibilityBuffer
 
 __all__ = ["Renderer"]
 
@@ -137,6 +139,8 @@ class Renderer:
             np.zeros(FRAME.size, np.uint8),
         )
         self._targets: Targets | None = None
+        self._visibility_choice = VisibilityChoice(device, self._geometry)
+        self._visibility: VisibilityBuffer | None = None
         # What the scene of the last frame has behind it, not drawn there.
         self._sky_behind: Sky | None = None
         self._scene = ScenePreparation(
@@ -158,6 +162,9 @@ class Renderer:
 
     def release_targets(self) -> None:
         """Give back what pictures are drawn into, until the next one."""
+        if self._visibility is not None:
+            self._visibility.destroy()
+            self._visibility = None
         if self._targets is not None:
             self._screen.forget()
             self._progressive.forget()
@@ -220,20 +227,14 @@ class Renderer:
         self._geometry.adopt(uploads)
 
     def prepare_lighting(
-        self,
-        environment: Any,
-        scene: Scene,
-        settings: RenderSettings,
-        told: Callable[[int, int], None],
-    ) -> MadeLighting | None:
+        self, environment: Any, scene: Scene, told: Callable[[int, int], None]
+    ) -> MadeLighting:
         """What will light ``scene`` with ``environment``, whatever it shows.
 
-        With ``settings``, which may be those that come next; None if that is
-        there already. On a thread that may wait, while another one draws.
-        ``told`` gets how many pieces are done, and of how many; what it
-        raises ends it.
+        On a thread that may wait, while another one draws. ``told`` gets
+        how many pieces are done, and of how many; what it raises ends it.
         """
-        needs = _map_needs(scene, settings, is_lit=True, has_diffuse=True)
+        needs = self._map_needs(scene, is_lit=True, has_diffuse=True)
         return self._sources.prepare(environment, needs, told)
 
     def adopt_lighting(self, lighting: MadeLighting) -> None:
@@ -256,7 +257,10 @@ class Renderer:
         is_reversed = self.device.info.clip_control
         view = look_through(camera, width / height, reversed_z=is_reversed)
         # Before anything that may have to wait for images.
-        targets = self._update_targets()
+        samples = self._visibility_choice.samples(
+            self.settings, materials, scene.drawables
+        )
+        targets = self._update_targets(samples)
         self._update_maps(scene, materials)
         lights = self._sources.rows(scene, view.position)
         prepared = self._scene.update(
@@ -266,6 +270,7 @@ class Renderer:
             lights,
             float_target=self._has_float_target,
             logarithmic_depth=view.depth_range is not None,
+            visibility=samples,
         )
         visible = self._visible(scene, camera)
         if self._accumulates:
@@ -452,16 +457,32 @@ class Renderer:
         )
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
-        needs = _map_needs(
-            scene,
-            self.settings,
-            is_lit=materials.has_lit,
-            has_diffuse=materials.has_diffuse,
+        needs = self._map_needs(
+            scene, is_lit=materials.has_lit, has_diffuse=materials.has_diffuse
         )
         if self._sources.update_maps(scene.environment, needs):
             self._screen.forget()
             self._sky_map.forget()
             self._scene.forget()
+
+    def _map_needs(
+        self, scene: Scene, *, is_lit: bool, has_diffuse: bool
+    ) -> MapNeeds:
+        """What of an environment ``scene`` shows, whichever it is."""
+        settings = self.settings
+        shows_irradiance = is_lit and settings.light_part == "irradiance"
+        reflects = settings.ibl != "off"
+        has_background = scene.background == "environment"
+        return MapNeeds(
+            background=has_background,
+            specular=is_lit and reflects,
+            irradiance=(has_diffuse or shows_irradiance) and reflects,
+            suns=settings.suns if reflects else "off",
+            irradiance_as=settings.irradiance,
+            ibl=settings.ibl,
+            reflections=settings.reflections,
+            blurred=has_background and scene.background_blur > 0.0,
+        )
 
     def _visible(self, scene: Scene, camera: Camera) -> NDArray[np.intp]:
         width, height = self.size
@@ -470,19 +491,36 @@ class Renderer:
             scene.visible(camera, width / height, pixels / height)
         )
 
-    def _update_targets(self) -> Targets:
+    def _update_targets(self, visible_samples: int = 0) -> Targets:
         settings = self.settings
         samples = min(settings.samples, self.device.info.max_samples)
         float_output = self._has_float_target
         if self._accumulates:
             samples = 1  # Edges are smooth by another point in every frame.
+        if visible_samples:
+            samples = 1  # The visibility buffer has them.
         wanted = (self.size, samples, float_output)
         if self._targets is None or self._targets.made_for != wanted:
             self.release_targets()
             self._targets = Targets(
                 self.device, self.size, samples, float_output=float_output
             )
+        self._update_visibility(self._targets, visible_samples)
         return self._targets
+
+    def _update_visibility(self, targets: Targets, samples: int) -> None:
+        visibility = self._visibility
+        if visibility is not None and visibility.made_for == (targets, samples):
+            return
+        if visibility is not None:
+            visibility.destroy()
+            self._visibility = None
+        if samples:
+            from moka.renderer.visibility_buffer import VisibilityBuffer
+
+            self._visibility = VisibilityBuffer(
+                self.device, self._passes, targets, samples
+            )
 
     def _draw_scene(
         self,
@@ -500,7 +538,15 @@ class Renderer:
             self._scene.poses.update(visible, self._geometry, commands)
         setup = commands.command_buffer(SortKey(PASS_SCENE))
         setup.fill_buffer(
-            self._frame, self._frame_values(scene, view, len(lights))
+            self._frame,
+            self._frame_values(
+                scene,
+                view,
+                len(lights),
+                prepared.visible_surface.triangle_bits
+                if prepared.visible_surface
+                else 0,
+            ),
         )
         if scene.live_materials is not None:
             prepared.update_materials(scene.live_materials, setup)
@@ -508,27 +554,38 @@ class Renderer:
             setup.fill_buffer(
                 self._sources.buffer(capacity), lights.view(np.uint8)
             )
-        setup.bind_framebuffer(targets.scene)
         # Black is opaque where the environment should be and is not.
         is_dark = (
             scene.background == "environment" and self._sources.maps.map is None
         )
-        setup.clear((0, 0, 0, float(is_dark)), 0.0 if is_reversed else 1.0)
-        if self._accumulates:
-            self._progressive.mask(setup, 1.0 if is_reversed else 0.0)
-        elif self.area is not None:
-            setup.scissor(self.area)
+        clear = (0.0, 0.0, 0.0, float(is_dark))
+        if self._visibility is not None:
+            self._visibility.begin(setup, self.area)
+        else:
+            setup.bind_framebuffer(targets.scene)
+            setup.clear(clear, 0.0 if is_reversed else 1.0)
+            if self._accumulates:
+                self._progressive.mask(setup, 1.0 if is_reversed else 0.0)
+            elif self.area is not None:
+                setup.scissor(self.area)
         states = np.array(
             [commands.state_index(state) for state in prepared.states],
             np.uint32,
         )
         commands.use(prepared.handles)
-        commands.draws(
-            *self._scene.gatherer.gather(
-                scene.transforms, visible, view, states
-            ),
-            in_order=True,
+        draws, instances = self._scene.gatherer.gather(
+            scene.transforms, visible, view, states
         )
+        commands.draws(draws, instances, in_order=True)
+        if self._visibility is not None:
+            self._visibility.shade(
+                commands,
+                SortKey(PASS_SCENE, LAYER_BACKGROUND),
+                prepared,
+                instances,
+                clear,
+                self.area,
+            )
         self._sky_behind = self._sky(scene, view)
         if self._accumulates:
             # What is averaged over frames has its sky in every one of them.
@@ -561,7 +618,11 @@ class Renderer:
         )
 
     def _frame_values(
-        self, scene: Scene, view: View, light_count: int
+        self,
+        scene: Scene,
+        view: View,
+        light_count: int,
+        triangle_bits: int = 0,
     ) -> NDArray[np.void]:
         samples = (0, self.settings.ibl_samples, 0, 0)
         if self._accumulates:
@@ -574,6 +635,7 @@ class Renderer:
             specular_levels=self._sources.maps.specular_levels,
             light_count=light_count,
             sample_range=samples,
+            triangle_bits=triangle_bits,
         )
 
     def _sky(self, scene: Scene, view: View) -> Sky | None:
@@ -627,22 +689,3 @@ class Renderer:
             ("permutations", prepared.permutation_count),
         ):
             self.statistics.set_count(name, value)
-
-
-def _map_needs(
-    scene: Scene, settings: RenderSettings, *, is_lit: bool, has_diffuse: bool
-) -> MapNeeds:
-    """What of an environment ``scene`` shows, whichever it is."""
-    shows_irradiance = is_lit and settings.light_part == "irradiance"
-    reflects = settings.ibl != "off"
-    has_background = scene.background == "environment"
-    return MapNeeds(
-        background=has_background,
-        specular=is_lit and reflects,
-        irradiance=(has_diffuse or shows_irradiance) and reflects,
-        suns=settings.suns if reflects else "off",
-        irradiance_as=settings.irradiance,
-        ibl=settings.ibl,
-        reflections=settings.reflections,
-        blurred=has_background and scene.background_blur > 0.0,
-    )

@@ -147,6 +147,15 @@ class SceneMaterials:
         return opaque
 
     @property
+    def are_alike(self) -> bool:
+        """Whether all ask for one program and sample the same textures."""
+        return all(
+            each == listed[0]
+            for listed in (self.descriptions, self.requests, self.textures)
+            for each in listed
+        )
+
+    @property
     def has_lit(self) -> bool:
         """Whether light matters at all."""
         return any(

@@ -85,6 +85,7 @@ class ScenePreparation:
         *,
         float_target: bool,
         logarithmic_depth: bool,
+        visibility: int = 0,
     ) -> PreparedScene:
         """What a frame of ``scene`` needs, made if it is not there.
 
@@ -99,6 +100,7 @@ class ScenePreparation:
             positional=bool(lights["positional"].any()),
             float_target=float_target,
             logarithmic_depth=logarithmic_depth,
+            visibility=visibility,
         )
         key = (self._materials.key, lighting)
         if self._has_prepared and self.key == key:
@@ -125,11 +127,14 @@ class ScenePreparation:
         )
         self._has_prepared = True
         self.key = key
+        surface = self.prepared.visible_surface
         self.gatherer = DrawGatherer(
             scene.drawables,
             self.prepared,
             self._pass,
             None if poses is None else poses.places,
+            None if surface is None else surface.places,
+            0 if surface is None else surface.triangle_bits,
         )
         return self.prepared
 
@@ -142,6 +147,7 @@ class ScenePreparation:
         positional: bool,
         float_target: bool,
         logarithmic_depth: bool,
+        visibility: int,
     ) -> LightingDescription:
         maps = self._sources.maps
         # Irradiance is what white plaster would show.
@@ -162,4 +168,5 @@ class ScenePreparation:
             positional,
             scene.environment_rotation != 0,
             settings.light_part,
+            visibility=visibility,
         )

@@ -24,6 +24,7 @@ BRDFS = ("gltf", "karis", "blinn-phong")
 DIFFUSE_MODELS = ("lambert", "oren-nayar", "burley")
 IRRADIANCE = ("auto", "sh", "cube")
 MIP_FILTERS = ("linear", "nearest")
+SHADINGS = ("auto", "forward", "visibility")
 REFLECTIONS = ("full", "half")
 
 # Each is a light in every pixel.
@@ -76,6 +77,11 @@ class RenderSettings(Struct, frozen=True):
     texels a side of a texture keeps; larger ones are reduced, as they are to
     what the driver takes. ``specular_aa`` makes a surface as rough as the
     bumps of its normal map that a pixel averages.
+
+    ``shading`` is when surfaces are shaded: as they are drawn (``forward``),
+    or once for each pixel when it is known what is seen (``visibility``,
+    where the scene allows it); ``auto`` decides by the driver and the number
+    of triangles.
     """
 
     exposure: float = 0.0
@@ -99,6 +105,7 @@ class RenderSettings(Struct, frozen=True):
     specular_aa: bool = False
     mip_filter: str = "linear"
     cull_pixels: float = 0.5
+    shading: str = "auto"
 
     def __post_init__(self) -> None:
         """Raise OptionError for a value that means nothing."""
@@ -119,6 +126,7 @@ class RenderSettings(Struct, frozen=True):
         _check_count(
             "reference samples", self.sample_budget, MOST_REFERENCE_SAMPLES
         )
+        _check("shading", self.shading, SHADINGS)
         _check("mip filter", self.mip_filter, MIP_FILTERS)
         _check_count("anisotropy", self.anisotropy, MOST_ANISOTROPY)
         if self.max_texture_size is not None:

@@ -22,7 +22,6 @@ from moka.commands.sort_key import SortKey
 from moka.core.errors import MokaError
 from moka.graphics.device import GraphicsDevice
 from moka.ui.interface_pass import InterfacePass
-from moka.ui.style import apply_style
 
 __all__ = ["Interface"]
 
@@ -60,7 +59,9 @@ class Interface:
         io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
         io.backend_flags |= imgui.BackendFlags_.renderer_has_textures
         io.backend_flags |= imgui.BackendFlags_.renderer_has_vtx_offset
-        apply_style(imgui, scale)
+        style = imgui.get_style()
+        style.scale_all_sizes(scale)
+        style.font_scale_dpi = scale
         self.scale = scale
         self._pass = InterfacePass(device)
         self._draw_data: Any = None

@@ -1,21 +1,7 @@
 // The normal that light meets: interpolated or flat, then normal mapped.
 
 #include "include/direction.glsl"
-
-in vec3 surface_position;
-#ifdef MOKA_VERTEX_NORMAL
-centroid in vec3 surface_normal;
-#endif
-#ifdef MOKA_VERTEX_TANGENT
-centroid in vec4 surface_tangent;
-#endif
-
-// Back faces of a single-sided material are culled.
-#ifdef MOKA_DOUBLE_SIDED
-#define FRONT_FACING gl_FrontFacing
-#else
-#define FRONT_FACING true
-#endif
+#include "include/surface_point.glsl"
 
 // Towards the viewer.
 vec3 surface_view() {
@@ -26,8 +12,8 @@ vec3 surface_view() {
 // window coordinates this is the order of the product.
 vec3 facing_normal() {
     vec3 n = direction_of(cross(
-        direction_of(dFdx(surface_position)),
-        direction_of(dFdy(surface_position))));
+        direction_of(position_across()),
+        direction_of(position_up())));
     // A triangle seen exactly edge on, or a point, has no plane.
     return n == vec3(0.0) ? surface_view() : n;
 }
@@ -49,11 +35,11 @@ vec3 front_normal() {
 // of Wrinkled Surfaces Revisited". glTF's y points up in the image and v
 // down, hence the minus. For what moves its vertices or its coordinates, and
 // for triangles that have no normals.
-mat3 tangent_frame(vec3 n, vec2 uv) {
-    vec3 dp1 = dFdx(surface_position);
-    vec3 dp2 = dFdy(surface_position);
-    vec2 duv1 = dFdx(uv);
-    vec2 duv2 = dFdy(uv);
+mat3 tangent_frame(vec3 n, TEXTURE_PLACE uv) {
+    vec3 dp1 = position_across();
+    vec3 dp2 = position_up();
+    vec2 duv1 = place_across(uv);
+    vec2 duv2 = place_up(uv);
     // Only ratios matter, while products of what is as small or as large as
     // it gets would vanish or be infinite.
     float size = max(largest_component(dp1), largest_component(dp2));
@@ -72,8 +58,8 @@ mat3 tangent_frame(vec3 n, vec2 uv) {
     return mat3(t, side * dot(up, b) < 0.0 ? -up : up, n);
 }
 
-vec2 normal_uv(MaterialsRow row) {
-    vec2 uv = UV_OF_SET(MOKA_NORMAL_UV);
+TEXTURE_PLACE normal_uv(MaterialsRow row) {
+    TEXTURE_PLACE uv = UV_OF_SET(MOKA_NORMAL_UV);
 #ifdef MOKA_NORMAL_TRANSFORM
     uv = transformed(uv, row.normal_transform);
 #endif
@@ -81,8 +67,8 @@ vec2 normal_uv(MaterialsRow row) {
 }
 
 vec3 mapped_normal(vec3 n, MaterialsRow row) {
-    vec2 uv = normal_uv(row);
-    vec3 texel = texture(normal_texture, uv).xyz * 2.0 - 1.0;
+    TEXTURE_PLACE uv = normal_uv(row);
+    vec3 texel = read_texture(normal_texture, uv).xyz * 2.0 - 1.0;
     texel.xy *= row.normal_scale;
 #ifdef MOKA_VERTEX_TANGENT
     // As MikkTSpace bakes it: the frame is interpolated, not made
