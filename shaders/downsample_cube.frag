@@ -3,25 +3,27 @@
 // The mean of the four texels it covers, weighted by solid angle: the mean
 // over the sphere stays the same from level to level.
 
-#include "include/cube_face.glsl"
+#include "include/cube_faces.glsl"
 
+// The level above alone, without filtering.
 uniform samplerCube environment_cube;
 
-in vec2 uv;
-out vec4 radiance;
-
 void main() {
-    float quarter = 0.25 / float(size);
-    vec3 sum = vec3(0.0);
+    float quarter = 0.5 / float(textureSize(environment_cube, 0).x);
+    vec3 sums[FACE_COUNT];
+    for (int i = 0; i < FACE_COUNT; ++i) sums[i] = vec3(0.0);
     float weights = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        vec2 offset = vec2(i & 1, i >> 1) * 2.0 - 1.0;
-        vec3 direction =
-            direction_from_cube_face(face, uv + quarter * offset);
-        float weight = relative_solid_angle(direction);
-        sum += weight
-            * textureLod(environment_cube, direction, source_lod).rgb;
+    for (int part = 0; part < 4; ++part) {
+        vec2 offset = vec2(part & 1, part >> 1) * 2.0 - 1.0;
+        vec2 place = uv + quarter * offset;
+        float weight = relative_solid_angle(direction_of_output(0, place));
+        for (int i = 0; i < FACE_COUNT; ++i) {
+            vec3 direction = direction_of_output(i, place);
+            sums[i] += weight
+                * textureLod(environment_cube, direction, 0.0).rgb;
+        }
         weights += weight;
     }
-    radiance = vec4(sum / weights, 1.0);
+    for (int i = 0; i < FACE_COUNT; ++i)
+        radiance[i] = vec4(sums[i] / weights, 1.0);
 }

@@ -1,31 +1,31 @@
-// Resamples an equirectangular map into a face of a cube map.
+// Resamples an equirectangular map into the faces of a cube map.
 //
-// Each texel is the mean of subdivisions^2 bilinear samples, weighted by
+// Each texel is the mean of MOKA_SUBDIVISIONS^2 bilinear samples, weighted by
 // solid angle, so that a small sun keeps its flux.
 
-#include "include/cube_face.glsl"
+#include "include/cube_faces.glsl"
 
-// Level 0 with linear filtering, repeating in u and clamped in v.
+// One level with linear filtering, repeating in u and clamped in v.
 uniform sampler2D environment_map;
 
-in vec2 uv;
-out vec4 radiance;
-
 void main() {
-    vec3 sum = vec3(0.0);
+    const float cell = 1.0 / float(MOKA_SIZE * MOKA_SUBDIVISIONS);
+    vec3 sums[FACE_COUNT];
+    for (int i = 0; i < FACE_COUNT; ++i) sums[i] = vec3(0.0);
     float weights = 0.0;
-    float cell = 1.0 / float(size * subdivisions);
-    vec2 corner = uv - 0.5 / float(size) + 0.5 * cell;
-    for (int y = 0; y < subdivisions; ++y) {
-        for (int x = 0; x < subdivisions; ++x) {
-            vec3 direction =
-                direction_from_cube_face(face, corner + vec2(x, y) * cell);
-            float weight = relative_solid_angle(direction);
-            vec2 place = equirectangular_from_direction(direction);
-            sum += weight
-                * textureLod(environment_map, place, source_lod).rgb;
+    for (int y = 0; y < MOKA_SUBDIVISIONS; ++y) {
+        for (int x = 0; x < MOKA_SUBDIVISIONS; ++x) {
+            vec2 place = uv - 0.5 / float(MOKA_SIZE) + 0.5 * cell
+                + vec2(x, y) * cell;
+            float weight = relative_solid_angle(direction_of_output(0, place));
+            for (int i = 0; i < FACE_COUNT; ++i) {
+                vec2 texel = equirectangular_from_direction(
+                    direction_of_output(i, place));
+                sums[i] += weight * textureLod(environment_map, texel, 0.0).rgb;
+            }
             weights += weight;
         }
     }
-    radiance = vec4(sum / weights, 1.0);
+    for (int i = 0; i < FACE_COUNT; ++i)
+        radiance[i] = vec4(sums[i] / weights, 1.0);
 }

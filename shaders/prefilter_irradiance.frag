@@ -5,7 +5,7 @@
 // of equal weight, each with the level to read (Krivanek and Colbert 2008),
 // so that a small sun makes no spots.
 
-#include "include/cube_face.glsl"
+#include "include/cube_faces.glsl"
 #include "include/sampling.glsl"
 
 layout(std140) uniform PrefilterSamples {
@@ -15,17 +15,21 @@ layout(std140) uniform PrefilterSamples {
 
 uniform samplerCube environment_cube;
 
-in vec2 uv;
-out vec4 radiance;
-
 void main() {
-    vec3 n = normalize(direction_from_cube_face(face, uv));
-    mat3 basis = tangent_basis(n);
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < sample_count; ++i) {
-        vec4 entry = samples[i];
-        vec3 direction = basis * entry.xyz;
-        sum += textureLod(environment_cube, direction, entry.w).rgb;
+    mat3 bases[FACE_COUNT];
+    vec3 sums[FACE_COUNT];
+    for (int i = 0; i < FACE_COUNT; ++i) {
+        bases[i] = tangent_basis(normalize(direction_of_output(i, uv)));
+        sums[i] = vec3(0.0);
     }
-    radiance = vec4(sum / float(sample_count), 1.0);
+    int count = sample_count;
+    for (int number = 0; number < count; ++number) {
+        vec4 entry = samples[number];
+        for (int i = 0; i < FACE_COUNT; ++i) {
+            vec3 direction = bases[i] * entry.xyz;
+            sums[i] += textureLod(environment_cube, direction, entry.w).rgb;
+        }
+    }
+    for (int i = 0; i < FACE_COUNT; ++i)
+        radiance[i] = vec4(sums[i] / float(count), 1.0);
 }

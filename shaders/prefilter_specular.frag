@@ -7,7 +7,7 @@
 // is the sample's weight, and the level to read, after Krivanek and Colbert
 // 2008, "Real-time Shading with Filtered Importance Sampling".
 
-#include "include/cube_face.glsl"
+#include "include/cube_faces.glsl"
 #include "include/sampling.glsl"
 
 layout(std140) uniform PrefilterSamples {
@@ -17,17 +17,22 @@ layout(std140) uniform PrefilterSamples {
 
 uniform samplerCube environment_cube;
 
-in vec2 uv;
-out vec4 radiance;
-
 void main() {
-    vec3 n = normalize(direction_from_cube_face(face, uv));
-    mat3 basis = tangent_basis(n);
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < sample_count; ++i) {
-        vec4 entry = samples[i];
-        vec3 direction = basis * entry.xyz;
-        sum += entry.z * textureLod(environment_cube, direction, entry.w).rgb;
+    mat3 bases[FACE_COUNT];
+    vec3 sums[FACE_COUNT];
+    for (int i = 0; i < FACE_COUNT; ++i) {
+        bases[i] = tangent_basis(normalize(direction_of_output(i, uv)));
+        sums[i] = vec3(0.0);
     }
-    radiance = vec4(sum, 1.0);
+    int count = sample_count;
+    for (int number = 0; number < count; ++number) {
+        vec4 entry = samples[number];
+        for (int i = 0; i < FACE_COUNT; ++i) {
+            vec3 direction = bases[i] * entry.xyz;
+            sums[i] += entry.z
+                * textureLod(environment_cube, direction, entry.w).rgb;
+        }
+    }
+    for (int i = 0; i < FACE_COUNT; ++i)
+        radiance[i] = vec4(sums[i], 1.0);
 }

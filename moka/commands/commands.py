@@ -87,7 +87,10 @@ class GenerateMipmaps(Struct, frozen=True):
 
 
 class ResolveFramebuffer(Struct, frozen=True):
-    """Average the samples of ``source`` into ``target`` of equal size."""
+    """Average the samples of ``source`` into ``target`` of equal size.
+
+    Of one sample this is a copy.
+    """
 
     source: Handle
     target: Handle

@@ -27,6 +27,6 @@ def irradiance_cube(
         samples=pack(
             cosine_samples(IRRADIANCE_SAMPLES, size), IRRADIANCE_SAMPLES
         ),
-        count=IRRADIANCE_SAMPLES,
+        reads=IRRADIANCE_SAMPLES,
     )
     return cube

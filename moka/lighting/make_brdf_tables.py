@@ -36,7 +36,7 @@ def draw_brdf_table(
             "MOKA_SAMPLE_COUNT": samples,
             "MOKA_TABLE_SIZE": TABLE_SIZE,
         },
-        Attachment(texture),
+        [Attachment(texture)],
     )
     jobs.run()
     table: NDArray[np.float32] = device.read_texture(texture)[..., :2]

@@ -6,7 +6,6 @@ and a small cube holds irradiance. Each is made only when something asks for
 it.
 """
 
-from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,9 +17,12 @@ from moka.graphics.passes import FullscreenPasses
 from moka.lighting.environment_maps import EnvironmentMaps, upload_map
 from moka.lighting.importance import importance_table
 from moka.lighting.irradiance_cube import irradiance_cube
-from moka.lighting.preintegration_passes import PreintegrationPasses, Told
+from moka.lighting.preintegration_passes import (
+    CUBE_FACES,
+    PreintegrationPasses,
+    Told,
+)
 from moka.lighting.radiance_cube import (
-    ALL_FACES,
     cube_size,
     downsample,
     faces_that_differ,
@@ -126,8 +128,7 @@ class Preintegrator:
         passes.pause()
         source = passes.scratch(passes.cube(size, size.bit_length()))
         # A base is so even that one bilinear sample a texel is as good.
-        uneven: Collection[int] = () if has_suns else ALL_FACES
-        map_to_cube(passes, base, height, source, size, uneven)
+        map_to_cube(passes, base, height, source, size, fine=not has_suns)
         downsample(passes, source, size)
         if specular:
             maps.specular_levels = specular_level_count(size)
@@ -137,10 +138,15 @@ class Preintegrator:
                 # A mirror shows the suns. The rougher levels lack them:
                 # there a sun is a light, in the measure in which these
                 # levels are read.
-                uneven = faces_that_differ(environment.full, environment.base)
-                map_to_cube(
-                    passes, maps.map, height, maps.specular, size, uneven
-                )
+                sunny = faces_that_differ(environment.full, environment.base)
+                same = set(CUBE_FACES) - sunny
+                passes.copy_faces(source, maps.specular, same)
+                for face in sunny:
+                    map_to_cube(
+                        *(passes, maps.map, height, maps.specular, size),
+                        faces=[face],
+                        fine=True,
+                    )
             prefilter(passes, source, size, maps.specular, int(has_suns))
         if irradiance:
             maps.irradiance = irradiance_cube(passes, source, size)

@@ -3,7 +3,7 @@
 They run in one go; or in pieces, between which the GPU draws pictures.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from moka.commands.command_list import CommandList
@@ -21,14 +21,9 @@ from moka.commands.descriptors import (
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FULLSCREEN, FullscreenPasses
-from moka.graphics.uniform_block import (
-    Parameter,
-    ParameterType,
-    UniformLayout,
-)
 from moka.lighting.environment_maps import CUBE_FORMAT
 
-__all__ = ["PreintegrationPasses", "Told"]
+__all__ = ["CUBE_FACES", "PreintegrationPasses", "Told"]
 
 #: Gets how many pieces are done, and of how many; what it raises ends them.
 Told = Callable[[int, int], None]
@@ -37,15 +32,8 @@ Told = Callable[[int, int], None]
 # two cores without a GPU, less than a millisecond of any GPU.
 _READS_OF_A_PIECE = 1 << 21
 
-_CUBE_FACE = UniformLayout(
-    "CubeFace",
-    (
-        Parameter("face", ParameterType.INT),
-        Parameter("size", ParameterType.INT),
-        Parameter("subdivisions", ParameterType.INT),
-        Parameter("source_lod", ParameterType.FLOAT),
-    ),
-)
+#: +X -X +Y -Y +Z -Z, in the order of a cube map's layers.
+CUBE_FACES = range(6)
 
 
 class PreintegrationPasses:
@@ -99,53 +87,59 @@ class PreintegrationPasses:
         size: int,
         source: TextureBinding,
         *,
-        defines: Mapping[str, str | int] | None = None,
-        subdivisions: Sequence[int] = (1,) * 6,
+        defines: Mapping[str, str | int],
+        faces: Sequence[int] = CUBE_FACES,
         samples: bytes = b"",
-        count: int = 1,
+        reads: int = 1,
     ) -> None:
-        """Draw the six faces of one level, of ``size`` texels, of ``cube``.
+        """Draw ``faces``, all or one, of a level of ``size`` texels.
 
-        ``subdivisions`` are those of each face's texels, ``samples`` is the
-        block ``PrefilterSamples`` of ``count`` samples, where there is one.
+        ``samples`` is the block ``PrefilterSamples``, where there is one;
+        for a texel the program reads textures ``reads`` times.
         """
+        if len(faces) == 1:
+            defines = {**defines, "MOKA_FACE": faces[0]}
         uniforms = (
             (UniformBinding("PrefilterSamples", self._buffer(samples)),)
             if samples
             else ()
         )
-        for face, divisions in enumerate(subdivisions):
-            block = _CUBE_FACE.pack(
-                {"face": face, "size": size, "subdivisions": divisions}
+        self.draw(
+            fragment,
+            defines,
+            [Attachment(cube, level, face) for face in faces],
+            BindGroupDescriptor((source,), uniforms),
+            rows=size,
+            row_reads=len(faces) * size * reads,
+        )
+
+    def copy_faces(
+        self, source: Handle, target: Handle, faces: Collection[int]
+    ) -> None:
+        """Copy level 0 of ``faces`` to another cube of the same size."""
+        for face in faces:
+            one, other = (
+                self._framebuffer([Attachment(cube, 0, face)])
+                for cube in (source, target)
             )
-            faces = UniformBinding("CubeFace", self._buffer(block.tobytes()))
-            self.draw(
-                fragment,
-                defines or {},
-                Attachment(cube, level, face),
-                BindGroupDescriptor((source,), (*uniforms, faces)),
-                rows=size,
-                row_reads=size * divisions**2 * count,
-            )
+            self._pieces[-1].command_buffer().resolve(one, other)
 
     def draw(
         self,
         fragment: str,
         defines: Mapping[str, str | int],
-        target: Attachment,
+        targets: Sequence[Attachment],
         bindings: BindGroupDescriptor | None = None,
         *,
         rows: int = 1,
         row_reads: int = 0,
     ) -> None:
-        """Record one pass into ``target``.
+        """Record one pass into ``targets``, its outputs.
 
-        It has ``rows`` of texels, for each of which the program reads
+        They have ``rows`` of texels, for each of which the program reads
         textures ``row_reads`` times.
         """
-        framebuffer = self._keep(
-            self._device.create_framebuffer, FramebufferDescriptor((target,))
-        )
+        framebuffer = self._framebuffer(targets)
         group = self._keep(
             self._device.create_bind_group, bindings or BindGroupDescriptor()
         )
@@ -196,6 +190,12 @@ class PreintegrationPasses:
                 self._reads = 0
             self._reads += reads
             yield first, count
+
+    def _framebuffer(self, targets: Sequence[Attachment]) -> Handle:
+        return self._keep(
+            self._device.create_framebuffer,
+            FramebufferDescriptor(tuple(targets)),
+        )
 
     def _buffer(self, data: bytes) -> Handle:
         return self._keep(

@@ -75,5 +75,5 @@ def prefilter(
             # One program for all levels: the block holds the most.
             defines={"MOKA_SAMPLE_COUNT": MOST_SPECULAR_SAMPLES},
             samples=pack(samples, MOST_SPECULAR_SAMPLES),
-            count=len(samples),
+            reads=len(samples),
         )

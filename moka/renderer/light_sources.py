@@ -169,13 +169,16 @@ class LightSources:
 
     def prepare(
         self, environment: Environment | None, needs: MapNeeds, told: "Told"
-    ) -> MadeLighting:
+    ) -> MadeLighting | None:
         """Make lighting for :meth:`adopt`, and write it to the disk cache.
 
-        On a thread that may wait, while others draw; see
-        :func:`moka.lighting.make_lighting.make_lighting`.
+        None if it is there. On a thread that may wait, while others draw;
+        see :func:`moka.lighting.make_lighting.make_lighting`.
         """
-        made = self._make(needs.request(environment), needs.ibl, told)
+        request = needs.request(environment)
+        if self._made.serves(request, needs.ibl):
+            return None
+        made = self._make(request, needs.ibl, told)
         self._maker.keep()
         return made
 

@@ -227,14 +227,20 @@ class Renderer:
         self._geometry.adopt(uploads)
 
     def prepare_lighting(
-        self, environment: Any, scene: Scene, told: Callable[[int, int], None]
-    ) -> MadeLighting:
+        self,
+        environment: Any,
+        scene: Scene,
+        settings: RenderSettings,
+        told: Callable[[int, int], None],
+    ) -> MadeLighting | None:
         """What will light ``scene`` with ``environment``, whatever it shows.
 
-        On a thread that may wait, while another one draws. ``told`` gets
-        how many pieces are done, and of how many; what it raises ends it.
+        With ``settings``, which may be those that come next; None if that is
+        there already. On a thread that may wait, while another one draws.
+        ``told`` gets how many pieces are done, and of how many; what it
+        raises ends it.
         """
-        needs = self._map_needs(scene, is_lit=True, has_diffuse=True)
+        needs = _map_needs(scene, settings, is_lit=True, has_diffuse=True)
         return self._sources.prepare(environment, needs, told)
 
     def adopt_lighting(self, lighting: MadeLighting) -> None:
@@ -457,32 +463,16 @@ class Renderer:
         )
 
     def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
-        needs = self._map_needs(
-            scene, is_lit=materials.has_lit, has_diffuse=materials.has_diffuse
+        needs = _map_needs(
+            scene,
+            self.settings,
+            is_lit=materials.has_lit,
+            has_diffuse=materials.has_diffuse,
         )
         if self._sources.update_maps(scene.environment, needs):
             self._screen.forget()
             self._sky_map.forget()
             self._scene.forget()
-
-    def _map_needs(
-        self, scene: Scene, *, is_lit: bool, has_diffuse: bool
-    ) -> MapNeeds:
-        """What of an environment ``scene`` shows, whichever it is."""
-        settings = self.settings
-        shows_irradiance = is_lit and settings.light_part == "irradiance"
-        reflects = settings.ibl != "off"
-        has_background = scene.background == "environment"
-        return MapNeeds(
-            background=has_background,
-            specular=is_lit and reflects,
-            irradiance=(has_diffuse or shows_irradiance) and reflects,
-            suns=settings.suns if reflects else "off",
-            irradiance_as=settings.irradiance,
-            ibl=settings.ibl,
-            reflections=settings.reflections,
-            blurred=has_background and scene.background_blur > 0.0,
-        )
 
     def _visible(self, scene: Scene, camera: Camera) -> NDArray[np.intp]:
         width, height = self.size
@@ -689,3 +679,22 @@ class Renderer:
             ("permutations", prepared.permutation_count),
         ):
             self.statistics.set_count(name, value)
+
+
+def _map_needs(
+    scene: Scene, settings: RenderSettings, *, is_lit: bool, has_diffuse: bool
+) -> MapNeeds:
+    """What of an environment ``scene`` shows, whichever it is."""
+    shows_irradiance = is_lit and settings.light_part == "irradiance"
+    reflects = settings.ibl != "off"
+    has_background = scene.background == "environment"
+    return MapNeeds(
+        background=has_background,
+        specular=is_lit and reflects,
+        irradiance=(has_diffuse or shows_irradiance) and reflects,
+        suns=settings.suns if reflects else "off",
+        irradiance_as=settings.irradiance,
+        ibl=settings.ibl,
+        reflections=settings.reflections,
+        blurred=has_background and scene.background_blur > 0.0,
+    )

@@ -84,6 +84,12 @@ class Comparison:
         """Move the divider to ``x`` of ``width``."""
         self.divider = min(max(x / width, _MARGIN), 1.0 - _MARGIN)
 
+    def beside(self, main: Renderer) -> Renderer:
+        """The renderer of the other picture, made if there is none."""
+        if self.renderer is None:
+            self.renderer = Renderer(main.device, to_window=True, beside=main)
+        return self.renderer
+
     def draw(
         self,
         main: Renderer,
@@ -101,9 +107,7 @@ class Comparison:
             if self.renderer is not None:
                 self.renderer.release_targets()
             return
-        if self.renderer is None:
-            self.renderer = Renderer(main.device, to_window=True, beside=main)
-        other = self.renderer
+        other = self.beside(main)
         width, height = other.size = main.size
         left = round(self.divider * width)
         main.area = (0, 0, left, height)

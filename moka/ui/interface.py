@@ -22,6 +22,7 @@ from moka.commands.sort_key import SortKey
 from moka.core.errors import MokaError
 from moka.graphics.device import GraphicsDevice
 from moka.ui.interface_pass import InterfacePass
+from moka.ui.style import apply_style
 
 __all__ = ["Interface"]
 
@@ -59,9 +60,7 @@ class Interface:
         io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard
         io.backend_flags |= imgui.BackendFlags_.renderer_has_textures
         io.backend_flags |= imgui.BackendFlags_.renderer_has_vtx_offset
-        style = imgui.get_style()
-        style.scale_all_sizes(scale)
-        style.font_scale_dpi = scale
+        apply_style(imgui, scale)
         self.scale = scale
         self._pass = InterfacePass(device)
         self._draw_data: Any = None

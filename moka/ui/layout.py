@@ -13,6 +13,8 @@ __all__ = ["column_width", "draw_interface"]
 
 _COLUMN = 300.0
 
+_WRONG = (1.0, 0.5, 0.4, 1.0)
+
 
 def column_width(width: int, scale: float) -> int:
     """What the panels take of a window of ``width``; ``scale`` is that of text.
@@ -30,11 +32,12 @@ def draw_interface(viewer: "Viewer", imgui: Any, size: tuple[int, int]) -> None:
     if viewer.debug_view is None:
         here = f"{viewer.settings.ibl}, {viewer.settings.brdf}"
         viewer.comparison.draw_divider(imgui, viewer.area, here)
+    bottom = float(size[1])
     if viewer.shows_panels:
         _draw_column(viewer, imgui, size)
-        draw_timeline(imgui, viewer, viewer.area)
+        bottom -= draw_timeline(imgui, viewer, viewer.area)
     viewer.shows_help = draw_help(imgui, is_open=viewer.shows_help)
-    _draw_state(viewer, imgui, size)
+    _draw_state(viewer, imgui, bottom)
 
 
 def _draw_column(viewer: "Viewer", imgui: Any, size: tuple[int, int]) -> None:
@@ -54,29 +57,46 @@ def _draw_column(viewer: "Viewer", imgui: Any, size: tuple[int, int]) -> None:
             panel.draw(imgui, viewer)
             imgui.pop_id()
     imgui.pop_item_width()
+    imgui.text_disabled("F1 lists the keys")
     imgui.end()
 
 
-def _draw_state(viewer: "Viewer", imgui: Any, size: tuple[int, int]) -> None:
+def _draw_state(viewer: "Viewer", imgui: Any, bottom: float) -> None:
     """What is being done, and what went wrong, at the lower left."""
     doing = viewer.work.doing
-    if doing is None and viewer.error is None and viewer.message is None:
+    told = viewer.message if doing is None else f"{doing} ..."
+    plain = imgui.get_style().color_(imgui.Col_.text)
+    lines = [
+        (text, colour)
+        for text, colour in ((told, plain), (viewer.error, _WRONG))
+        if text is not None
+    ]
+    if not lines:
         return
-    imgui.set_next_window_pos((8, size[1] - 8), pivot=(0, 1))
-    flags = imgui.WindowFlags_
-    imgui.begin(
-        "state",
-        None,
-        flags.no_decoration | flags.always_auto_resize | flags.no_move,
-    )
-    if doing is not None:
-        imgui.text(f"{doing} ...")
-    elif viewer.message is not None:
-        imgui.text(viewer.message)
+    # Measured, since a window that fits itself is cut off for a frame, and
+    # there may be no other one.
+    wrap = 0.8 * viewer.area[0]
+    sizes = [imgui.calc_text_size(text, False, wrap) for text, _ in lines]
+    heights = [size.y for size in sizes]
     if viewer.error is not None:
-        imgui.push_text_wrap_pos(0.6 * size[0])
-        imgui.text_colored((1.0, 0.5, 0.4, 1.0), viewer.error)
+        heights.append(imgui.get_text_line_height())
+    style = imgui.get_style()
+    padding, gap = style.window_padding, style.item_spacing.y
+    imgui.set_next_window_size(
+        (
+            max(size.x for size in sizes) + 2 * padding.x + 1,
+            sum(heights) + gap * (len(heights) - 1) + 2 * padding.y,
+        )
+    )
+    imgui.set_next_window_pos((8, bottom - 8), pivot=(0, 1))
+    flags = imgui.WindowFlags_
+    imgui.begin("state", None, flags.no_decoration | flags.no_move)
+    for text, colour in lines:
+        imgui.push_style_color(imgui.Col_.text, colour)
+        imgui.push_text_wrap_pos(wrap + padding.x)
+        imgui.text(text)
         imgui.pop_text_wrap_pos()
-        if imgui.small_button("dismiss"):
-            viewer.error = None
+        imgui.pop_style_color()
+    if viewer.error is not None and imgui.small_button("dismiss"):
+        viewer.error = None
     imgui.end()

@@ -15,12 +15,15 @@ from moka.scene.camera import Camera
 from moka.scene.camera_choice import Look, Orbit, choose_camera, parse_camera
 from moka.scene.drawables import ModelLayout
 from moka.ui.file_watcher import FileWatcher
+from moka.ui.light_preparation import (
+    PreparedLight,
+    adopt_light,
+    prepare_light,
+)
 from moka.ui.preferences import Preferences, with_recent
 
 if TYPE_CHECKING:
     from moka.renderer.geometry import Upload
-    from moka.renderer.light_sources import MadeLighting
-    from moka.renderer.renderer import Renderer
     from moka.ui.viewer import Viewer
 
 __all__ = ["OpenedFiles"]
@@ -78,6 +81,7 @@ class OpenedFiles:
                 f"{path}: neither a model ({', '.join(MODEL_SUFFIXES)}) nor "
                 f"an environment ({', '.join(ENVIRONMENT_SUFFIXES)})"
             )
+            viewer.request_redraw()
 
     def open_model(self, source: Any, *, keep_view: bool = False) -> None:
         """Read a model in the background, and show it in place of this one.
@@ -126,27 +130,26 @@ class OpenedFiles:
 
     def _read_environment(
         self, source: Any
-    ) -> "tuple[Environment | None, list[tuple[Renderer, MadeLighting]]]":
-        """An environment, and what lights each picture; in the background."""
+    ) -> tuple[Environment | None, PreparedLight]:
+        """An environment, and what lights with it; in the background."""
         viewer = self._viewer
         environment = source
         if source is not None and not isinstance(source, Environment):
             environment = load_environment(source)
 
-        def told(done: int, total: int) -> None:
+        def told(progress: str) -> None:
             viewer.work.tell(
-                f"preparing the light of {_name(source)}: "
-                f"{100 * done // total} %"
+                f"preparing the light of {_name(source)}: {progress}"
             )
 
-        renderers = [viewer.renderer]
-        beside = viewer.comparison.renderer
-        if beside is not None and viewer.comparison.choice is not None:
-            renderers.append(beside)
-        return environment, [
-            (each, each.prepare_lighting(environment, viewer.scene, told))
-            for each in renderers
-        ]
+        prepared = prepare_light(
+            viewer,
+            environment,
+            viewer.settings,
+            viewer.comparison.choice,
+            told,
+        )
+        return environment, prepared
 
     def _show_model(
         self,
@@ -209,12 +212,11 @@ class OpenedFiles:
     def _show_environment(
         self,
         source: Any,
-        read: "tuple[Environment | None, list[tuple[Renderer, MadeLighting]]]",
+        read: tuple[Environment | None, PreparedLight],
     ) -> None:
         viewer = self._viewer
-        viewer.scene.environment, made = read
-        for renderer, lighting in made:
-            renderer.adopt_lighting(lighting)
+        viewer.scene.environment, prepared = read
+        adopt_light(prepared)
         self.environment_source = source
         if _is_path(source) and Path(source).exists():
             viewer.preferences = replace(

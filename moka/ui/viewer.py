@@ -7,6 +7,7 @@ told in the window, and the picture stays as it was.
 Here is its state, and what it does in each frame. Files that are opened are
 in :mod:`moka.ui.opened_files`, keys and the pointer in
 :mod:`moka.ui.gestures`, where the camera goes in :mod:`moka.ui.viewpoint`,
+how the picture is made in :mod:`moka.ui.choices`,
 what is read back from the GPU in :mod:`moka.ui.readbacks`, where panels stand
 in :mod:`moka.ui.layout`, and the command of what is seen in
 :mod:`moka.ui.picture_command`.
@@ -17,8 +18,6 @@ from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
-
-from msgspec.structs import replace
 
 from moka.app.application import App, GameTime
 from moka.app.events import (
@@ -32,11 +31,12 @@ from moka.app.render_request import RenderRequest
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Timestamps
 from moka.commands.sort_key import SortKey
-from moka.core.errors import MokaError, OptionError
+from moka.core.errors import MokaError
 from moka.renderer.settings import RenderSettings
 from moka.scene.lights import Light
 from moka.scene.scene_model import SceneModel
 from moka.ui.background_work import BackgroundWork
+from moka.ui.choices import Choices
 from moka.ui.comparison import Comparison
 from moka.ui.draft import Draft
 from moka.ui.frame_times import PASS_INTERFACE, FrameTimes, mark_passes
@@ -109,6 +109,7 @@ class Viewer(App):
         self.work = BackgroundWork(self.request_redraw)
         self.files = OpenedFiles(self)
         self.viewpoint = Viewpoint(self)
+        self.choices = Choices(self)
         self.gestures = Gestures(self)
         self.readbacks = Readbacks(self)
         self._settling = 0
@@ -136,6 +137,8 @@ class Viewer(App):
             # Dear ImGui takes a press and its release in two frames.
             self._settling = min(self._settling + 1, _MOST_FRAMES_TO_SETTLE)
         self.interface.take(event)
+        if isinstance(event, KeyEvent | MouseButtonEvent) and event.pressed:
+            self.message = None  # It has been read.
         if isinstance(event, DropEvent):
             for path in event.paths:
                 self.open(path)
@@ -156,7 +159,7 @@ class Viewer(App):
         self.files.reload()
         self.readbacks.take()
         self.gestures.advance(time.delta)
-        if self._is_animating():
+        if self.is_animating:
             self.draft.note_motion()
         self._settling = max(self._settling - 1, 0)
         if self._goes_on():
@@ -190,7 +193,7 @@ class Viewer(App):
         self.files.close()
         self.work.close()
         if self._remembers:
-            save_preferences(self._chosen())
+            save_preferences(self.choices.remembered())
         for panel in self.panels:
             panel.close()
         self.interface.close()
@@ -210,7 +213,8 @@ class Viewer(App):
             or self.draft.is_moving
         )
 
-    def _is_animating(self) -> bool:
+    @property
+    def is_animating(self) -> bool:
         """Whether an animation plays."""
         if self.model is None or not self.model.model.animations:
             return False
@@ -257,20 +261,6 @@ class Viewer(App):
         """How the picture is made."""
         return self.renderer.settings
 
-    def change_settings(self, **changes: Any) -> None:
-        """Replace settings by name, if they are others than now.
-
-        What means nothing, as a person may type it, is told and changes
-        nothing.
-        """
-        settings = self.renderer.settings
-        if any(getattr(settings, name) != changes[name] for name in changes):
-            try:
-                self.renderer.settings = replace(settings, **changes)
-            except OptionError as error:
-                self.error = str(error)
-            self.request_redraw()
-
     @property
     def environment_source(self) -> Any:
         """What lights: a path, a built-in name, or what else was given."""
@@ -294,7 +284,7 @@ class Viewer(App):
         self.request_redraw()
 
     def tell(self, message: str) -> None:
-        """Show a message until something else happens."""
+        """Show a message until a person presses something."""
         self.message = message
         self.request_redraw()
 
@@ -361,23 +351,3 @@ class Viewer(App):
         """Pixels of the picture, which is beside the panels."""
         part = 1.0 - self.column_width / window[0]
         return max(round(pixels[0] * part), 1), max(pixels[1], 1)
-
-    def _chosen(self) -> Preferences:
-        """What is to be remembered."""
-        settings = self.settings
-        fills_screen = self.window is not None and self.window.fullscreen
-        return replace(
-            self.preferences,
-            size=self.preferences.size if fills_screen else self.window_size,
-            shows_panels=self.shows_panels,
-            open_panels=tuple(
-                panel.title for panel in self.panels if panel.is_open
-            ),
-            environment=self.files.remembered_environment,
-            environment_intensity=self.scene.environment_intensity,
-            background_blur=self.scene.background_blur,
-            exposure=settings.exposure,
-            tone_map=settings.tone_map,
-            gamma=settings.gamma,
-            auto_rotates=self.auto_rotates,
-        )

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-__all__ = ["choice", "file_items", "slider"]
+__all__ = ["choice", "file_items", "hint", "slider"]
 
 
 def choice(imgui: Any, name: str, value: str, values: Sequence[str]) -> str:
@@ -28,6 +28,19 @@ def slider(
     flags = imgui.SliderFlags_.logarithmic if logarithmic else 0
     changed, number = imgui.slider_float(name, value, least, most, text, flags)
     return float(number) if changed else value
+
+
+def hint(imgui: Any, text: str) -> None:
+    """Say more of the last widget while the pointer is on it."""
+    # At once: after a delay there might be no frame to show it in.
+    is_pointed_at = imgui.is_item_hovered(
+        imgui.HoveredFlags_.allow_when_disabled
+    )
+    if is_pointed_at and imgui.begin_tooltip():
+        imgui.push_text_wrap_pos(24 * imgui.get_font_size())
+        imgui.text(text)
+        imgui.pop_text_wrap_pos()
+        imgui.end_tooltip()
 
 
 def file_items(imgui: Any, now: str, files: Sequence[str]) -> str | None:

@@ -25,8 +25,12 @@ TONE_MAPS = (
     "MOKA_TONE_MAP_EXPONENTIAL",
     "MOKA_TONE_MAP_NONE",
 )
+SIZES = ("MOKA_SIZE", "MOKA_SUBDIVISIONS")
 PASSES = [
-    ("equirectangular_to_cube.frag", ()),
+    *(
+        ("equirectangular_to_cube.frag", (*SIZES, *face))
+        for face in ((), ("MOKA_FACE",))
+    ),
     ("downsample_cube.frag", ()),
     ("accumulate.frag", ()),
     ("accumulate_batch.frag", ()),
@@ -88,7 +92,7 @@ INCLUDES = sorted(
 
 @pytest.mark.parametrize(("name", "defines"), PASSES)
 def test_a_pass_compiles_in_all_its_permutations(name, defines):
-    fragment = load_shader(name, dict.fromkeys(defines, 16))
+    fragment = load_shader(name, dict.fromkeys(defines, 4))
     gpu().compile(load_shader("fullscreen.vert"), fragment)
 
 

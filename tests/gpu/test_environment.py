@@ -9,6 +9,7 @@ from tests.support.cube_passes import (
     convolve,
     draw_cube,
     prefilter,
+    resample,
     smooth,
     texel_directions,
 )
@@ -119,23 +120,21 @@ def test_turning_is_counter_clockwise_seen_from_above():
 
 def test_a_map_becomes_a_cube_without_seams():
     image = smooth(oracle.equirectangular_directions(512, 256))
-    cube = draw_cube(
-        "equirectangular_to_cube.frag",
-        32,
-        {"environment_map": gpu().texture(image)},
-        subdivisions=2,
-    )
+    cube = resample(image, 32, 2)
     assert np.abs(cube - smooth(texel_directions(32))).max() < 2e-3
+
+
+def test_a_face_alone_is_that_of_all_six():
+    image = np.random.default_rng(3).uniform(0.0, 1.0, (64, 128, 3))
+    cube = resample(image, 32, 2)
+    for face in range(6):
+        assert np.array_equal(resample(image, 32, 2, face=face), cube[face])
 
 
 def test_sampling_the_cube_gives_what_the_map_has_in_that_direction():
     """On all six axes and between: the whole way, through the hardware."""
     image = smooth(oracle.equirectangular_directions(512, 256))
-    faces = draw_cube(
-        "equirectangular_to_cube.frag",
-        64,
-        {"environment_map": gpu().texture(image)},
-    )
+    faces = resample(image, 64)
     alpha = np.ones((6, 64, 64, 1))
     cube = gpu().cube(np.concatenate((faces, alpha), axis=-1), mipmaps=False)
     # A list of one sample reads the cube in the direction of a texel.
@@ -167,12 +166,7 @@ def test_a_sun_of_one_texel_keeps_its_flux(
     width, height, size = 128, 64, 32
     image = np.zeros((height, width, 3))
     image[row, column] = 1e5
-    cube = draw_cube(
-        "equirectangular_to_cube.frag",
-        size,
-        {"environment_map": gpu().texture(image)},
-        subdivisions=subdivisions,
-    )
+    cube = resample(image, size, subdivisions)
     flux = np.einsum("fyxc,yx->c", cube, cube_texel_solid_angles(size))
     solid_angles = oracle.equirectangular_solid_angles(width, height)
     expected = 1e5 * solid_angles[row, column]

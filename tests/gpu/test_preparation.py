@@ -84,11 +84,20 @@ def test_lighting_in_pieces_is_lighting(
     told: list[tuple[int, int]] = []
     made = elsewhere(
         lambda: renderer.prepare_lighting(
-            scene.environment, scene, lambda *now: told.append(now)
+            scene.environment,
+            scene,
+            settings,
+            lambda *now: told.append(now),
         )
     )
+    assert made is not None
     renderer.adopt_lighting(made)
     assert np.array_equal(drawn(renderer, scene, camera), expected)
+    # It is there now.
+    again = renderer.prepare_lighting(
+        scene.environment, scene, settings, nobody
+    )
+    assert again is None
     if ibl != "reference":  # Which samples the map, and integrates nothing.
         assert len(told) > 20
         assert [done for done, _ in told] == list(range(1, len(told) + 1))
@@ -117,7 +126,8 @@ def test_pictures_are_drawn_between_the_pieces(
 
     thread = threading.Thread(target=draw_meanwhile)
     thread.start()
-    made = renderer.prepare_lighting(following, scene, told)
+    made = renderer.prepare_lighting(following, scene, renderer.settings, told)
+    assert made is not None
     thread.join(60)
     assert draws.is_set()
     scene.environment = following
@@ -137,7 +147,10 @@ def test_what_is_prepared_is_not_made_again_and_nothing_is_left(
     kinds = list(ResourceKind)
     before = [egl_device.count(kind) for kind in kinds]
     scene.environment = uneven(2)
-    made = renderer.prepare_lighting(scene.environment, scene, nobody)
+    made = renderer.prepare_lighting(
+        scene.environment, scene, renderer.settings, nobody
+    )
+    assert made is not None
     assert egl_device.count(ResourceKind.TEXTURE) > before[1]
     spent = renderer.statistics.stages_ms["environment"]
     renderer.adopt_lighting(made)
@@ -154,9 +167,11 @@ def test_what_is_prepared_and_not_wanted_goes(
     drawn(renderer, scene, camera)
     textures = egl_device.count(ResourceKind.TEXTURE)
     for seed in (2, 3):
-        renderer.adopt_lighting(
-            renderer.prepare_lighting(uneven(seed), scene, nobody)
+        made = renderer.prepare_lighting(
+            uneven(seed), scene, renderer.settings, nobody
         )
+        assert made is not None
+        renderer.adopt_lighting(made)
     scene.environment = uneven(4)
     drawn(renderer, scene, camera)
     assert egl_device.count(ResourceKind.TEXTURE) == textures

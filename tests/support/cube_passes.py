@@ -7,28 +7,29 @@ from tests.support.gpu import gpu
 from tests.support.oracles import environment as oracle
 
 
-def cube_face_block(face, size, *, subdivisions=1, source_lod=0.0) -> bytes:
-    integers = np.array([face, size, subdivisions], np.int32)
-    return integers.tobytes() + np.float32(source_lod).tobytes()
+def draw_cube(name, size, textures, *, defines=None, blocks=None):
+    """The six faces (6, size, size, 3) that pass ``name`` draws at once."""
+    return gpu().draw_outputs(
+        name,
+        (size, size),
+        6,
+        defines=defines or {},
+        textures=textures,
+        blocks=blocks or {},
+    )[..., :3]
 
 
-def draw_cube(name, size, textures, *, defines=None, blocks=None, **block):
-    """The six faces (6, size, size, 3) that pass ``name`` draws."""
-    return np.stack(
-        [
-            gpu().draw(
-                name,
-                (size, size),
-                defines=defines or {},
-                textures=textures,
-                blocks={
-                    "CubeFace": cube_face_block(face, size, **block),
-                    **(blocks or {}),
-                },
-            )[..., :3]
-            for face in range(6)
-        ]
-    )
+def resample(image, size, subdivisions=1, *, face=None):
+    """A map (H, W, 3 or 4) as a cube, or as that one ``face`` of it."""
+    name = "equirectangular_to_cube.frag"
+    textures = {"environment_map": gpu().texture(image)}
+    defines = {"MOKA_SIZE": size, "MOKA_SUBDIVISIONS": subdivisions}
+    if face is None:
+        return draw_cube(name, size, textures, defines=defines)
+    defines["MOKA_FACE"] = face
+    return gpu().draw(name, (size, size), defines=defines, textures=textures)[
+        ..., :3
+    ]
 
 
 def texel_directions(size: int) -> np.ndarray:

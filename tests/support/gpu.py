@@ -90,7 +90,7 @@ class Gpu:
                     (WIDTH, height), 4, texels.tobytes(), dtype="f4"
                 )
             bound = {**textures, **values}
-            pixels = self._draw(text, (WIDTH, height), bound, {}, "f4")
+            pixels = self._draw(text, (WIDTH, height), bound, {}, "f4")[0]
             for texture in values.values():
                 texture.release()
         rows = pixels.reshape(-1, 4)[:count]
@@ -122,7 +122,25 @@ class Gpu:
                 blocks,
                 dtype,
                 load_shader(vertex, defines),
-            )
+            )[0]
+
+    def draw_outputs(
+        self,
+        name: str,
+        size: tuple[int, int],
+        count: int,
+        *,
+        defines: Defines = NO_DEFINES,
+        textures: Mapping[str, Any] = NO_TEXTURES,
+        blocks: Mapping[str, bytes] = NO_BLOCKS,
+    ) -> Image:
+        """:meth:`draw` of a pass with outputs 0 to ``count`` - 1.
+
+        Returns float32 of shape (count, height, width, 4).
+        """
+        text = load_shader(name, defines)
+        with self.context:
+            return self._draw(text, size, textures, blocks, "f4", count=count)
 
     def texture(self, pixels: ArrayLike) -> moderngl.Texture:
         """A float32 texture of (H, W, 4), row 0 at t = 0, bilinear."""
@@ -164,7 +182,9 @@ class Gpu:
         blocks: Mapping[str, bytes],
         dtype: str,
         vertex: ShaderText | None = None,
+        count: int = 1,
     ) -> Image:
+        """What each of ``count`` outputs is afterwards."""
         program = self._program(vertex or load_shader("fullscreen.vert"), text)
         for unit, (name, texture) in enumerate(textures.items()):
             # A sampler that an expression does not need is optimised away.
@@ -178,11 +198,14 @@ class Gpu:
             assert len(data) >= block.size, f"{name}: {block.size} bytes"
             buffers.append(self.context.buffer(data))
             buffers[-1].bind_to_uniform_block(binding)
-        framebuffer = self._framebuffer(size, dtype)
+        framebuffer = self._framebuffer(size, dtype, count)
         framebuffer.use()
         vertices = self.context.vertex_array(program, [])
         vertices.render(moderngl.TRIANGLES, vertices=3)
-        data = framebuffer.read(components=4, dtype=dtype)
+        data = b"".join(
+            framebuffer.read(components=4, attachment=output, dtype=dtype)
+            for output in range(count)
+        )
         messages = self._owner.drain_debug_messages()
         assert not [message for message in messages if message.is_error]
         assert self.context.error == "GL_NO_ERROR"
@@ -191,17 +214,22 @@ class Gpu:
         kinds = {"f4": np.float32, "f2": np.float16, "f1": np.uint8}
         pixels = np.frombuffer(data, kinds[dtype])
         scale = np.float32(255 if dtype == "f1" else 1)
-        return pixels.reshape(size[1], size[0], 4).astype(np.float32) / scale
+        shape = count, size[1], size[0], 4
+        return pixels.reshape(shape).astype(np.float32) / scale
 
     def _framebuffer(
-        self, size: tuple[int, int], dtype: str
+        self, size: tuple[int, int], dtype: str, count: int
     ) -> moderngl.Framebuffer:
         # Kept, because ModernGL binds the last one again, even a released
         # one, when it makes another.
-        key = (*size, dtype)
+        key = (*size, dtype, count)
         if key not in self._framebuffers:
-            texture = self.context.texture(size, 4, dtype=dtype)
-            self._framebuffers[key] = self.context.framebuffer([texture])
+            self._framebuffers[key] = self.context.framebuffer(
+                [
+                    self.context.texture(size, 4, dtype=dtype)
+                    for _ in range(count)
+                ]
+            )
         return self._framebuffers[key]
 
     def _program(

@@ -55,8 +55,21 @@ class Hand:
     def is_item_hovered(self, _: int) -> bool:
         return True
 
-    def set_tooltip(self, text: str) -> None:
+    def begin_tooltip(self) -> bool:
+        return True
+
+    def text(self, text: str) -> None:
         self.hints.append(text)
+
+    def get_font_size(self) -> float:
+        return 13.0
+
+    def push_text_wrap_pos(self, width: float) -> None:
+        """Nothing is laid out here, and so for what comes after it."""
+
+    def pop_text_wrap_pos(self) -> None: ...
+
+    def end_tooltip(self) -> None: ...
 
 
 def shown_of(
@@ -93,7 +106,7 @@ def shown_of(
             LACQUER,
             {
                 *("roughness", "metalness", "emission", "strength"),
-                *("index of refr.", "specular", "spec. colour"),
+                *("refractive index", "specular", "specular colour"),
             },
         ),
     ],
@@ -113,10 +126,10 @@ def test_there_is_a_widget_for_what_changes_the_picture(
         ({"roughness": 0.25}, "roughness_factor", 0.25),
         ({"metalness": 1.0}, "metallic_factor", 1.0),
         ({"metalness": 7.0}, "metallic_factor", 1.0),
-        ({"index of refr.": 1.5}, "ior", 1.5),
-        ({"index of refr.": 0.5}, "ior", 1.0),
+        ({"refractive index": 1.5}, "ior", 1.5),
+        ({"refractive index": 0.5}, "ior", 1.0),
         ({"specular": 0.0}, "specular_factor", 0.0),
-        ({"spec. colour": [2, 0, -1]}, "specular_colour_factor", (2, 0, 0)),
+        ({"specular colour": [2, 0, -1]}, "specular_colour_factor", (2, 0, 0)),
         ({"base colour": [1, 2, 0]}, "base_colour_factor", (1, 1, 0, 1)),
         ({"emission": [1, 0, 0]}, "emissive_factor", (2, 0, 0)),
         ({"strength": 4.0}, "emissive_factor", (1, 2, 4)),

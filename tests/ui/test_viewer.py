@@ -376,7 +376,7 @@ def test_the_copied_command_makes_the_picture_that_is_seen(
         viewer.controls.apply(viewer.camera)
         viewer.camera.projection = Perspective(math.radians(30), near=0.004)
         viewer.scene.background_blur = 0.3
-        viewer.change_settings(gamma=1.8, exposure=-1.0, brdf="karis")
+        viewer.choices.change_settings(gamma=1.8, exposure=-1.0, brdf="karis")
         drawn = {viewer.frame}
 
         def is_drawn() -> bool:
@@ -424,7 +424,7 @@ def test_what_was_chosen_is_remembered(
         if viewer.environment_source != str(environment):
             viewer.open_environment(str(environment))
         elif viewer.model is not None and not viewer.work.doing:
-            viewer.change_settings(tone_map="agx")
+            viewer.choices.change_settings(tone_map="agx")
             viewer.quit()
         viewer.request_redraw()
 
@@ -533,6 +533,13 @@ def test_what_is_opened_is_prepared_elsewhere(
         )
         viewer.open(ball)
         person.wait("the model", lambda: viewer.model is not model)
+        viewer.choices.compare_with("filtered lighting")
+        person.wait(
+            "another picture",
+            lambda: viewer.comparison.choice == "filtered lighting",
+        )
+        viewer.choices.change_settings(ibl="reference")
+        person.wait("another mode", lambda: viewer.settings.ibl == "reference")
         box = (20, 20, 60, 60)
         person.wait("a picture", lambda: bool(person.look(box).any()))
 
@@ -572,7 +579,7 @@ def test_numbers_that_mean_nothing_are_told(watch: Watch) -> None:
 
     def story(person: Person, viewer: Viewer) -> None:
         before = viewer.settings
-        viewer.change_settings(exposure=1000.0)
+        viewer.choices.change_settings(exposure=1000.0)
         assert viewer.error is not None
         assert "exposure" in viewer.error
         assert viewer.settings == before

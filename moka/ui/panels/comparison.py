@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 from moka.ui.comparison import COMPARISONS
-from moka.ui.panels.panel import Panel
-from moka.ui.widgets import choice
+from moka.ui.panels.panel import Panel, tell_of_motion
+from moka.ui.widgets import choice, hint
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -25,10 +25,9 @@ class ComparisonPanel(Panel):
         shown = comparison.choice or _NOTHING
         wanted = choice(imgui, "beside", shown, (_NOTHING, *COMPARISONS))
         if wanted != shown:
-            comparison.choice = None if wanted == _NOTHING else wanted
-            viewer.request_redraw()
+            viewer.choices.compare_with(None if wanted == _NOTHING else wanted)
         if comparison.choice is not None:
-            imgui.text_disabled("drag the line to move it")
+            imgui.text_disabled("drag the line in the picture")
             self._progress(imgui, viewer)
         self._error(imgui, viewer)
 
@@ -38,6 +37,7 @@ class ComparisonPanel(Panel):
             return
         lighting = other.lighting_statistics
         imgui.text(f"{lighting['samples_per_pixel']:.0f} samples a pixel")
+        tell_of_motion(imgui, viewer)
 
     def _error(self, imgui: Any, viewer: "Viewer") -> None:
         imgui.separator()
@@ -48,6 +48,11 @@ class ComparisonPanel(Panel):
         if imgui.button("measure the error of the light"):
             viewer.measure_error()
         imgui.end_disabled()
+        hint(
+            imgui,
+            "Renders this view in the mode of the panel Lighting and by "
+            "reference lighting, and compares the radiance of the surfaces.",
+        )
         if is_truth:
             imgui.text_wrapped("This is the reference lighting itself.")
         if measurement is None:

@@ -6,13 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 from moka.lighting.environment import BRIGHTEST
 from moka.renderer.settings import BRDFS, DIFFUSE_MODELS, IBL_MODES
-from moka.ui.panels.panel import Panel
-from moka.ui.widgets import choice, file_items, slider
+from moka.ui.panels.panel import Panel, tell_of_motion
+from moka.ui.widgets import choice, file_items, hint, slider
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
 
 __all__ = ["EnvironmentPanel", "LightingPanel"]
+
+_MODE_HINT = (
+    "How the light of the environment is computed. split-sum: at once, as "
+    "other renderers do. filtered: split-sum, corrected by samples of each "
+    "pixel. reference: integrated, for as long as nothing moves. off: the "
+    "environment is only seen."
+)
 
 _BUILT_IN = ("studio", "sky", "furnace", "none")
 
@@ -39,7 +46,7 @@ class EnvironmentPanel(Panel):
             math.degrees(scene.environment_rotation),
             -180,
             180,
-            "%.0f deg",
+            "%.0f°",
         )
         scene.environment_rotation = math.radians(degrees)
         intensity = slider(
@@ -65,15 +72,17 @@ class LightingPanel(Panel):
         """The widgets."""
         settings = viewer.settings
         ibl = choice(imgui, "mode", settings.ibl, IBL_MODES)
+        hint(imgui, _MODE_HINT)
         brdf = choice(imgui, "BRDF", settings.brdf, BRDFS)
         diffuse = choice(imgui, "diffuse", settings.diffuse, DIFFUSE_MODELS)
         _, multiscatter = imgui.checkbox(
             "multiple scattering", settings.multiscatter
         )
+        hint(imgui, "Gives rough metals the light back that they would lose.")
         samples = settings.ibl_samples
         if ibl == "filtered":
             _, samples = imgui.slider_int("samples a pixel", samples, 1, 64)
-        viewer.change_settings(
+        viewer.choices.change_settings(
             ibl=ibl,
             brdf=brdf,
             diffuse=diffuse,
@@ -85,6 +94,7 @@ class LightingPanel(Panel):
             imgui.text(f"{lighting['samples_per_pixel']:.0f} samples a pixel")
             if lighting["estimated_error"] is not None:
                 imgui.text(f"error {lighting['estimated_error']:.2%}")
+            tell_of_motion(imgui, viewer)
 
 
 def _picked(imgui: Any, now: str, files: list[str]) -> str:

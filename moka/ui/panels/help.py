@@ -17,6 +17,8 @@ _GESTURES = (
     ("R", "turn around by itself"),
     ("Space", "play or pause"),
     ("H or Tab", "hide and show the panels"),
+    ("drop a file", "open a model, or light with an environment"),
+    ("Ctrl+click on a slider", "type a number"),
     ("F1", "this help"),
     ("F11", "full screen"),
     ("F12", "save the picture"),

@@ -46,6 +46,7 @@ class InspectorPanel(Panel):
         assert viewer.model is not None
         node = viewer.model.node(viewer.selection or 0)
         scale = viewer.controls.distance
+        # In metres, and relative to the parent's.
         for name, speed in (("position", 0.002 * scale), ("scale", 0.01)):
             value = [float(each) for each in getattr(node, name)]
             changed, value = imgui.drag_float3(name, value, speed)

@@ -38,6 +38,8 @@ class LightsPanel(Panel):
             imgui.push_id(number)
             self._light(imgui, viewer, light, number)
             imgui.pop_id()
+        if not lights:
+            imgui.text_disabled("no lights but the environment")
         if imgui.button("add a directional light"):
             light = viewer.scene.add_light(
                 PunctualLight(LightKind.DIRECTIONAL, intensity=3.0)
@@ -82,8 +84,8 @@ class LightsPanel(Panel):
         if light not in viewer.added_lights:
             return
         azimuth, elevation = _direction(light)
-        turned = slider(imgui, "azimuth", azimuth, -180.0, 180.0, "%.0f deg")
-        raised = slider(imgui, "elevation", elevation, -90.0, 90.0, "%.0f deg")
+        turned = slider(imgui, "azimuth", azimuth, -180.0, 180.0, "%.0f°")
+        raised = slider(imgui, "elevation", elevation, -90.0, 90.0, "%.0f°")
         if (turned, raised) != (azimuth, elevation):
             _point(light, math.radians(turned), math.radians(raised))
             viewer.request_redraw()

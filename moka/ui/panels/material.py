@@ -7,6 +7,7 @@ from msgspec import Struct
 
 from moka.material.material import AlphaMode, Material
 from moka.material.numbers import NUMBERS, can_change
+from moka.ui.widgets import hint
 
 if TYPE_CHECKING:
     from moka.scene.scene import Scene
@@ -48,7 +49,7 @@ _OCCLUSION = _Slider("occlusion", "occlusion_strength", 1.0)
 _CUTOFF = _Slider("alpha cutoff", "alpha_cutoff", 1.0)
 # Of KHR_materials_ior and KHR_materials_specular.
 _DIELECTRIC = (
-    _Slider("index of refr.", "ior", _MOST_IOR, 1.0),
+    _Slider("refractive index", "ior", _MOST_IOR, 1.0),
     _Slider("specular", "specular_factor", 1.0),
 )
 
@@ -109,7 +110,7 @@ def changes_of_material(
             changes[slider.field] = _within(slider.field, wanted)
     if _has_specular(material):
         changed, colour = _colour(
-            imgui, "spec. colour", now.specular_colour_factor
+            imgui, "specular colour", now.specular_colour_factor
         )
         if changed:
             changes["specular_colour_factor"] = colour
@@ -184,7 +185,5 @@ def _within(field: str, value: Any) -> Any:
 
 
 def _explain(imgui: Any, field: str, *, is_free: bool) -> None:
-    if not is_free and imgui.is_item_hovered(
-        imgui.HoveredFlags_.allow_when_disabled
-    ):
-        imgui.set_tooltip(_REASONS.get(field, "The shader has no use for it."))
+    if not is_free:
+        hint(imgui, _REASONS.get(field, "The shader has no use for it."))

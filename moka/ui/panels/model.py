@@ -4,9 +4,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from moka.ui.panels.panel import Panel
-from moka.ui.widgets import choice, file_items
+from moka.ui.widgets import choice, file_items, hint
 
 if TYPE_CHECKING:
+    from moka.scene.camera import Camera
     from moka.ui.viewer import Viewer
 
 __all__ = ["ModelPanel"]
@@ -37,11 +38,7 @@ class ModelPanel(Panel):
             if wanted != shown:
                 model.variant = None if wanted == _NO_VARIANT else wanted
                 viewer.request_redraw()
-        for number, camera in enumerate(model.cameras):
-            imgui.push_id(number)
-            if imgui.button(camera.name or f"camera {number}"):
-                viewer.viewpoint.look_through(camera)
-            imgui.pop_id()
+        _cameras(imgui, viewer, model.cameras)
 
     def _open(self, imgui: Any, viewer: "Viewer") -> None:
         now = viewer.files.model_source
@@ -62,3 +59,17 @@ class ModelPanel(Panel):
         )
         if entered and self._path:
             viewer.open(Path(self._path).expanduser())
+
+
+def _cameras(imgui: Any, viewer: "Viewer", cameras: "list[Camera]") -> None:
+    """Those of the file, to look through."""
+    if not cameras:
+        return
+    if imgui.begin_combo("look through", "a camera of the file"):
+        for number, camera in enumerate(cameras):
+            imgui.push_id(number)
+            if imgui.selectable(camera.name or f"camera {number}", False)[0]:
+                viewer.viewpoint.look_through(camera)
+            imgui.pop_id()
+        imgui.end_combo()
+    hint(imgui, "C looks through the next one.")

@@ -9,6 +9,7 @@ from moka.ui.picture_command import (
     copy_command,
     picture_command,
 )
+from moka.ui.widgets import hint
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -41,8 +42,7 @@ class OutputPanel(Panel):
         imgui.separator()
         if imgui.button("copy the command"):
             copy_command(viewer)
-        if imgui.is_item_hovered():
-            imgui.set_tooltip(picture_command(viewer))
+        hint(imgui, picture_command(viewer))
         missing = beyond_command(viewer)
         if missing:
             imgui.text_disabled("not part of the command:")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
 
-__all__ = ["Panel"]
+__all__ = ["Panel", "tell_of_motion"]
 
 
 class Panel(ABC):
@@ -29,3 +29,10 @@ class Panel(ABC):
 
     def close(self) -> None:  # noqa: B027
         """Called once at the end."""
+
+
+def tell_of_motion(imgui: Any, viewer: "Viewer") -> None:
+    """Say why samples of reference lighting do not add up, if so."""
+    if viewer.is_animating or viewer.auto_rotates:
+        what = "the animation" if viewer.is_animating else "the turning (R)"
+        imgui.text_wrapped(f"Pause {what}: samples add up while all stands.")

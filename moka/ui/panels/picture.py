@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from moka.core.tone_map import TONE_MAPS
 from moka.renderer.settings import MOST_GAMMA
 from moka.ui.panels.panel import Panel
-from moka.ui.widgets import choice, slider
+from moka.ui.widgets import choice, hint, slider
 
 if TYPE_CHECKING:
     from moka.ui.viewer import Viewer
@@ -32,6 +32,7 @@ class PicturePanel(Panel):
         )
         is_power, power = settings.gamma is not None, settings.gamma or 2.2
         _, is_power = imgui.checkbox("power gamma", is_power)
+        hint(imgui, "Encodes by a power in the place of the curve of sRGB.")
         if is_power:
             power = slider(imgui, "gamma", power, 0.1, MOST_GAMMA, "%.2f")
             power = min(max(power, 0.01), MOST_GAMMA)
@@ -42,7 +43,8 @@ class PicturePanel(Panel):
             names.get(settings.samples, str(settings.samples)),
             tuple(_SAMPLES),
         )
-        viewer.change_settings(
+        hint(imgui, "Samples of a pixel: the more, the smoother the edges.")
+        viewer.choices.change_settings(
             exposure=exposure,
             tone_map=tone_map,
             gamma=power if is_power else None,
@@ -51,6 +53,11 @@ class PicturePanel(Panel):
         if settings.samples > 1:
             _, viewer.draft.is_wanted = imgui.checkbox(
                 "fewer in motion, if slow", viewer.draft.is_wanted
+            )
+            hint(
+                imgui,
+                "One sample a pixel while something moves, if a frame takes "
+                "longer than a twentieth of a second.",
             )
         self._background(imgui, viewer)
 
@@ -66,7 +73,8 @@ class PicturePanel(Panel):
                 wanted if wanted != "colour" else (0.05, 0.05, 0.05)
             )
         if scene.background == "environment":
-            blur = slider(imgui, "blur", scene.background_blur, 0.0, 1.0)
+            blur = slider(imgui, "blur", scene.background_blur, 0, 1, "%.2f")
+            hint(imgui, "As a surface of that roughness reflects it.")
             scene.background_blur = min(max(blur, 0.0), 1.0)
         if not isinstance(scene.background, str):
             changed, colour = imgui.color_edit3(

@@ -71,7 +71,7 @@ class ProfilerPanel(Panel):
             counters = frame.wait()
             for name in counters.__struct_fields__:
                 counts[name] = getattr(counters, name)
-        if not imgui.begin_table("counters", 2):
+        if not _begin_table(imgui, "counters", "of the last frame", "count"):
             return
         for name, value in counts.items():
             imgui.table_next_row()
@@ -82,13 +82,21 @@ class ProfilerPanel(Panel):
         imgui.end_table()
 
 
+def _begin_table(imgui: Any, name: str, *columns: str) -> bool:
+    """Begin one of a wide column of words and a narrow one of numbers."""
+    if not imgui.begin_table(name, len(columns)):
+        return False
+    stretch = imgui.TableColumnFlags_.width_stretch
+    for column, weight in zip(columns, (0.7, 0.3), strict=True):
+        imgui.table_setup_column(column, stretch, weight)
+    imgui.table_headers_row()
+    return True
+
+
 def _table(imgui: Any, title: str, history: History) -> None:
     """Means of the last frames."""
-    if not imgui.begin_table(title, 2):
+    if not _begin_table(imgui, title, title, "mean"):
         return
-    imgui.table_setup_column(title)
-    imgui.table_setup_column("mean")
-    imgui.table_headers_row()
     rows = [(name, history.mean(name)) for name in history.series]
     for name, value in (*rows, ("all", sum(value for _, value in rows))):
         imgui.table_next_row()

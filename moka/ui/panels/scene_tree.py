@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SceneTreePanel"]
 
-# Rows of text that the tree takes at most.
-_HEIGHT = 16
+# Rows of text that the tree takes at most: what is selected is below it.
+_HEIGHT = 10
 
 # How far deep nodes still move to the right.
 _DEEPEST = 10

@@ -34,7 +34,7 @@ class ViewPanel(Panel):
             return
         viewer.debug_view = wanted if wanted in DEBUG_VIEWS else None
         viewer.renderer.shows_stops = wanted == _LUMINANCE
-        viewer.change_settings(light_part=_PARTS.get(wanted, "all"))
+        viewer.choices.change_settings(light_part=_PARTS.get(wanted, "all"))
         viewer.request_redraw()
 
 
