@@ -161,6 +161,8 @@ def _groups(faces: _Faces, vertices: Integers) -> Integers:
     flat = np.repeat(faces.flat, 3)
     groups[loose | flat] = -1
     _flood(faces, links, np.flatnonzero(loose & ~flat), groups)
+    if not flat.any():
+        return groups
     # A triangle that is no more than a line has no edges to be connected
     # through; it follows the first corner that stands where its own do.
     whole = np.flatnonzero(~flat)
