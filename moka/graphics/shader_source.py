@@ -155,6 +155,9 @@ class _Reader:
         depth = 0
         yield self._line_directive(number, 1)
         for count, line in enumerate(lines, start=1):
+            if "#" not in line:
+                yield line
+                continue
             if condition := _CONDITION.match(line):
                 depth += -1 if condition[1] == "endif" else 1
             include = _INCLUDE.match(line)
