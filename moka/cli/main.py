@@ -1,6 +1,7 @@
 """Parses the command line and turns errors into one line each."""
 
 import argparse
+import gc
 import os
 import sys
 import time
@@ -34,6 +35,10 @@ _COMMANDS = {
     "doctor": "Say which OpenGL contexts work here and what is missing.",
 }
 
+# New objects before Python looks for cycles, 700 otherwise. Those of imports
+# live until the end, so that looking there is for nothing.
+_OBJECTS_OF_A_PICTURE = 100_000
+
 USER_ERROR = 2
 INTERNAL_ERROR = 1
 
@@ -52,7 +57,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     those of the process, which then is ours and ends: :func:`run_process`.
     """
     if arguments is None:
-        run_process(partial(_run, sys.argv[1:], owns_process=True))
+        given = sys.argv[1:]
+        if given[:1] == ["render"]:
+            gc.set_threshold(_OBJECTS_OF_A_PICTURE)
+        run_process(partial(_run, given, owns_process=True))
     return _run(list(arguments))
 
 

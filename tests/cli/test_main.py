@@ -66,3 +66,27 @@ def test_a_command_loads_nothing_of_the_others() -> None:
             check=True,
         )
         assert not absent & set(done.stdout.splitlines()[-1].split())
+
+
+@pytest.mark.parametrize(
+    ("call", "is_own"),
+    [("main()", True), ("main(sys.argv[1:])", False)],
+)
+def test_a_picture_of_its_own_process_is_not_interrupted_to_collect(
+    call: str, is_own: bool
+) -> None:
+    code = (
+        "import gc, sys\n"
+        "from moka.cli import main\n"
+        "before = gc.get_threshold()[0]\n"
+        f"try:\n    {call}\nexcept SystemExit:\n    pass\n"
+        "print(before, gc.get_threshold()[0])"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code, "render", "--help"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    before, after = map(int, result.stdout.splitlines()[-1].split())
+    assert after >= 100 * before if is_own else after == before
