@@ -49,7 +49,7 @@ bool share_corner(uvec3 a, uvec3 b) {
         || any(equal(a.zzz, b));
 }
 
-// Weights of three corners, and what they become a pixel across and up.
+// Weights of three corners, and how they change a pixel across and up.
 struct Barycentric {
     vec3 here;
     vec3 across;
@@ -71,17 +71,20 @@ Barycentric barycentric(vec3 a, vec3 b, vec3 c) {
     b.xy -= centre * b.z;
     c.xy -= centre * c.z;
     mat3 edges = transpose(mat3(cross(b, c), cross(c, a), cross(a, b)));
-    vec3 here = edges[2];
-    vec3 across = here + step.x * edges[0];
-    vec3 up = here + step.y * edges[1];
     Barycentric weights;
     weights.is_clockwise = dot(vec3(a.x, b.x, c.x), edges[0]) < 0.0;
-    here /= here.x + here.y + here.z;
-    weights.across = across / (across.x + across.y + across.z) - here;
-    weights.up = up / (up.x + up.y + up.z) - here;
+    float sum = edges[2].x + edges[2].y + edges[2].z;
+    // What vanishes in float32 has weights all the same.
+    float scale = sum == 0.0 ? 0.0 : 1.0 / sum;
+    vec3 here = edges[2] * scale;
+    weights.across = (edges[0] - here * (edges[0].x + edges[0].y + edges[0].z))
+        * (step.x * scale);
+    weights.up = (edges[1] - here * (edges[1].x + edges[1].y + edges[1].z))
+        * (step.y * scale);
     // The centre can lie beside a triangle that other samples show.
     here = max(here, 0.0);
-    weights.here = here / (here.x + here.y + here.z);
+    sum = here.x + here.y + here.z;
+    weights.here = sum > 0.0 ? here / sum : vec3(1.0 / 3.0);
     return weights;
 }
 

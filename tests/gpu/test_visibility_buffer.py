@@ -20,6 +20,7 @@ from moka.material.material import (
     TextureTransform,
 )
 from moka.model import LightKind, Primitive, PunctualLight, cube, sphere
+from moka.model.cameras import Orthographic, Perspective
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
 from moka.scene.scene import Scene
@@ -328,6 +329,40 @@ def test_darkness_is_opaque(device: GraphicsDevice) -> None:
             device, scene, camera, SIZE, samples=samples, shading="visibility"
         )
         np.testing.assert_array_equal(drawn[..., 3], 1.0)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("scale", [1e-5, 1.0, 1e6])
+@pytest.mark.parametrize("fov", [0.9, 0.0])
+def test_crowded_triangles_of_any_size_are_finite(
+    device: GraphicsDevice, samples: int, scale: float, fov: float
+) -> None:
+    """Fifty triangles a pixel, a box around the camera, both kinds of view."""
+    detailed = sphere(0.5, 400, 200)
+    size = np.diag((scale, scale, scale, 1.0))
+    material = Material(base_colour_texture=noise(1), double_sided=True)
+    around = cube(1.0), material, size @ np.diag((9.0, 9.0, 9.0, 1.0))
+    scene = lit([(detailed, material, size), around])
+    camera = looking((0, 0, -1), 1.0, (0, 0, 3 * scale))
+    near, far = 0.01 * scale, 20 * scale
+    camera.projection = (
+        Perspective(fov, near=near)
+        if fov
+        else Orthographic(scale, scale, near, far)
+    )
+    pictures = [
+        draw_radiance(
+            device, scene, camera, (64, 64), samples=samples, shading=how
+        )
+        for how in ("forward", "visibility")
+    ]
+    forward, seen = (each[..., :3] for each in pictures)
+    assert np.isfinite(seen).all()
+    assert seen.min() >= 0
+    assert forward.std() > 0
+    off = np.abs(seen - forward).max(axis=-1)
+    assert np.median(off) < 0.02 * np.median(forward)
+    assert off.mean() < 0.05 * forward.mean()
 
 
 def draws(device: GraphicsDevice, scene: Scene, **settings: Any) -> int:
