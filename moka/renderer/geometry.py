@@ -145,30 +145,33 @@ class GeometryPool:
         (upload,) = self._uploads_of([(primitive, wanted)])
         return upload.descriptors[_key((primitive, wanted))].base_vertex
 
-    def joins(self, wanted: Sequence[Wanted]) -> bool:
-        """Whether their meshes have, or will have, one pair of buffers.
+    def joined_size(self, wanted: Sequence[Wanted]) -> tuple[int, int] | None:
+        """Vertices and indices, at most, of the one pair of buffers they share.
 
-        Those of one layout do that are uploaded together, all of them with
-        indices.
+        None where they do not, and will not, share one: those of one layout
+        do that are uploaded together, all of them with indices.
         """
         uploads = self._uploads_of(wanted)
         if not uploads:
-            return all(
-                primitive.indices is not None
-                or not attributes.isdisjoint(MADE_TANGENTS)
-                for primitive, attributes in (
-                    (each[0], frozenset(each[1])) for each in wanted
-                )
-            )
+            if not all(map(_has_indices, wanted)):
+                return None
+            # To make tangents can give each corner a vertex of its own.
+            corners = [
+                max(each.index_count, each.vertex_count)
+                for each in {_key(pair): pair[0] for pair in wanted}.values()
+            ]
+            return sum(corners), sum(corners)
         (first, *others) = uploads
-        return (
-            not others
-            and first.indices > 0
-            and all(_key(each) in first.meshes for each in wanted)
-        )
+        if (
+            others
+            or not first.indices
+            or any(_key(each) not in first.meshes for each in wanted)
+        ):
+            return None
+        return first.vertices, first.indices
 
     def joined(self, wanted: Sequence[Wanted]) -> JoinedMeshes:
-        """The meshes of ``wanted``, which :meth:`joins`, after the upload."""
+        """The meshes of ``wanted``, which share buffers, after the upload."""
         (upload,) = self._uploads_of(wanted)
         return JoinedMeshes(
             [upload.descriptors[_key(each)] for each in wanted],
@@ -197,6 +200,14 @@ class GeometryPool:
 def _key(wanted: Wanted) -> _Key:
     primitive, attributes = wanted
     return _Key(primitive.geometry, attributes)
+
+
+def _has_indices(wanted: Wanted) -> bool:
+    """Whether it is drawn with indices: its own, or those of its tangents."""
+    primitive, attributes = wanted
+    return primitive.indices is not None or any(
+        name in MADE_TANGENTS for name in attributes
+    )
 
 
 def vertex_layout(wanted: Sequence[str]) -> VertexLayout:

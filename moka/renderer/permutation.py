@@ -22,6 +22,7 @@ __all__ = [
     "Permutation",
     "lights_layout",
     "materials_layout",
+    "row_parts",
     "visibility_program",
 ]
 
@@ -52,6 +53,16 @@ def materials_layout(parts: RowPart) -> UniformLayout:
     """A page of the material table: as many rows as a block can hold."""
     row = material_layout(1, parts)
     return material_layout(_BLOCK_BYTES // row.size, parts)
+
+
+def row_parts(material: MaterialDescription) -> RowPart:
+    """What rows of such materials hold beyond what all do."""
+    parts = RowPart(0)
+    if any(use.has_transform for use in material.textures):
+        parts |= RowPart.TRANSFORMS
+    if Feature.SPECULAR in material.features:
+        parts |= RowPart.SPECULAR
+    return parts
 
 
 class LightingDescription(Struct, frozen=True):
@@ -145,12 +156,7 @@ class Permutation(Struct, frozen=True):
     @property
     def row_parts(self) -> RowPart:
         """What its material rows hold beyond what all do."""
-        parts = RowPart(0)
-        if any(use.has_transform for use in self.material.textures):
-            parts |= RowPart.TRANSFORMS
-        if Feature.SPECULAR in self.material.features:
-            parts |= RowPart.SPECULAR
-        return parts
+        return row_parts(self.material)
 
     def program(self) -> ProgramDescriptor:
         """The sources that compile it."""

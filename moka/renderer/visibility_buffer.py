@@ -168,7 +168,9 @@ class VisibilityBuffer:
             if self._instances is not None:
                 self._device.destroy(self._instances)
             # Twice as much as is needed now: instances come and go.
-            self._instance_capacity = 2 * texels
+            self._instance_capacity = min(
+                2 * texels, self._device.info.max_buffer_texels
+            )
             self._instances = self._device.create_texture(
                 TextureDescriptor(
                     PixelFormat.RGBA32UI,

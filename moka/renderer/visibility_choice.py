@@ -1,10 +1,12 @@
 """When a scene is drawn through a visibility buffer.
 
 It is where this is faster, and only for what it can show: opaque, rigid
-triangles of one program and one set of textures, in one pair of buffers. What
-else there is, forward shading draws as well or better.
+triangles of one program, one set of textures and one page of the material
+table, in one pair of buffers. What else there is, forward shading draws as
+well or better.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +14,9 @@ import numpy as np
 from moka.commands.descriptors import Topology
 from moka.graphics.device import GraphicsDevice
 from moka.material.description import Feature, MaterialDescription
+from moka.model.mesh import Primitive
 from moka.renderer.geometry import GeometryPool
+from moka.renderer.permutation import materials_layout, row_parts
 from moka.renderer.settings import RenderSettings
 
 if TYPE_CHECKING:
@@ -85,29 +89,59 @@ class VisibilityChoice:
             return False
         description = materials.descriptions[0]
         primitives = [drawables.primitives[index] for index in materials.drawn]
+        page = materials_layout(row_parts(description)).rows
         if (
             description.features & _UNSUITED
             or description.deforms
             or not materials.are_alike
+            or len(set(materials.materials)) > page
             or any(
                 each.topology is not Topology.TRIANGLES for each in primitives
             )
-            or not self._geometry.joins(
-                [(each, description.attributes) for each in primitives]
-            )
         ):
+            return False
+        rows = len(drawables.primitive)
+        if not self._can_be_read(primitives, description.attributes, rows):
             return False
         triangles = np.zeros(len(drawables.primitives), np.intp)
         triangles[list(materials.drawn)] = [
-            each.index_count // 3 for each in primitives
+            (each.index_count or each.vertex_count) // 3 for each in primitives
         ]
-        rows = len(drawables.primitive)
         if int(triangles.max()).bit_length() + rows.bit_length() > 32:
             return False  # Too many for a number in the buffer.
         drawn = int(triangles[drawables.primitive].sum())
         return settings.shading == "visibility" or (
             drawn >= FEWEST_TRIANGLES and _is_dear(settings, description)
         )
+
+    def _can_be_read(
+        self,
+        primitives: Sequence[Primitive],
+        attributes: tuple[str, ...],
+        rows: int,
+    ) -> bool:
+        """Whether this driver has textures for what the shader looks up.
+
+        For vertices and indices, if they are in one pair of buffers, and for
+        as many rows of instances.
+        """
+        from moka.renderer.visible_geometry import (
+            INSTANCE_TEXELS,
+            vertex_texels,
+        )
+
+        size = self._geometry.joined_size(
+            [(each, attributes) for each in primitives]
+        )
+        if size is None:
+            return False
+        vertices, indices = size
+        texels = (
+            vertices * vertex_texels(attributes),
+            indices,
+            rows * INSTANCE_TEXELS,
+        )
+        return max(texels) <= self._device.info.max_buffer_texels
 
 
 def _is_dear(

@@ -16,11 +16,20 @@ from moka.commands.descriptors import (
     TextureDescriptor,
     TextureKind,
 )
+from moka.commands.draws import INSTANCE
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
 from moka.renderer.geometry import JoinedMeshes, vertex_layout
 
-__all__ = ["VisibleGeometry", "visible_defines"]
+__all__ = [
+    "INSTANCE_TEXELS",
+    "VisibleGeometry",
+    "vertex_texels",
+    "visible_defines",
+]
+
+#: Texels of four whole numbers that a row of INSTANCE has.
+INSTANCE_TEXELS = INSTANCE.itemsize // 16
 
 # The widest texels first: each takes one read.
 _TEXELS = {
@@ -33,16 +42,21 @@ _TEXELS = {
 def visible_defines(attributes: Sequence[str]) -> dict[str, str | int]:
     """How include/visible_triangle.glsl finds these glTF attributes."""
     layout = vertex_layout(attributes)
-    width = _texel_width(layout.stride)
     defines: dict[str, str | int] = {
-        "MOKA_TEXEL_WIDTH": width,
-        "MOKA_VERTEX_TEXELS": layout.stride // (4 * width),
+        "MOKA_TEXEL_WIDTH": _texel_width(layout.stride),
+        "MOKA_VERTEX_TEXELS": vertex_texels(attributes),
     }
     for attribute in layout.attributes:
         if attribute.offset:
             name = f"MOKA_{attribute.name.upper()}_AT"
             defines[name] = attribute.offset // 4
     return defines
+
+
+def vertex_texels(attributes: Sequence[str]) -> int:
+    """How many texels a vertex with these glTF attributes has."""
+    stride = vertex_layout(attributes).stride
+    return stride // (4 * _texel_width(stride))
 
 
 class VisibleGeometry:

@@ -109,6 +109,59 @@ def test_it_is_for_rigid_triangles_of_one_program(name: str) -> None:
         assert renderer._targets.samples == 4
 
 
+def test_materials_have_to_fit_one_page() -> None:
+    """A page of 16 KiB holds 341 rows of 48 bytes."""
+
+    def squares(count: int) -> Model:
+        square = quad()
+        return model_of(
+            [
+                (square, Material(roughness_factor=i / 400), np.eye(4))
+                for i in range(count)
+            ]
+        )
+
+    assert is_used(squares(341), shading="visibility")
+    assert not is_used(squares(342), shading="visibility")
+
+
+@pytest.mark.parametrize(
+    ("texels", "used"),
+    [
+        # 4 vertices of 3 texels, 6 indices, 50 rows of 4 texels.
+        (199, False),
+        (200, True),
+    ],
+)
+def test_a_driver_has_to_read_all_rows(texels: int, used: bool) -> None:
+    info = replace(SOFTWARE, max_buffer_texels=texels)
+    square = quad()
+    many = model_of([(square, None, np.eye(4))] * 50)
+    assert is_used(many, info=info, shading="visibility") == used
+
+
+@pytest.mark.parametrize("uploaded", [False, True])
+def test_a_driver_has_to_read_all_vertices(uploaded: bool) -> None:
+    # 2208 triangles have 6624 indices.
+    info = replace(SOFTWARE, max_buffer_texels=6623)
+    backend = RecordingBackend(info)
+    scene = Scene()
+    scene.add(ball())
+    with GraphicsDevice(lambda: backend) as device:
+        settings = RenderSettings(shading="visibility")
+        renderer = Renderer(device, (64, 64), settings)
+        if uploaded:
+            renderer.settings = replace(settings, shading="forward")
+            renderer.draw(scene, Camera(), CommandList())
+            renderer.settings = settings
+        commands = CommandList()
+        renderer.draw(scene, Camera(), commands)
+        device.submit(commands).wait()
+        renderer.close()
+    steps = backend.frames[-1].steps
+    assert not any(isinstance(each, FillTexture) for each in steps)
+
+
 def test_it_needs_depth_that_is_reversed_and_one_frame() -> None:
     plain = replace(SOFTWARE, clip_control=False)
     assert not is_used(ball(), info=plain, shading="visibility")
