@@ -102,9 +102,16 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
         "--version", action="version", version=f"moka {__version__}"
     )
     commands = parser.add_subparsers(
-        title="commands", metavar="COMMAND", required=True
+        # It would be found with a formatter, which looks for a terminal.
+        title="commands",
+        metavar="COMMAND",
+        required=True,
+        prog=parser.prog,
     )
+    is_named = given[:1] and given[0] in _COMMANDS
     for name, summary in _COMMANDS.items():
+        if is_named and name not in given:
+            continue  # Nobody will read about it.
         command = commands.add_parser(
             name, help=summary, description=summary, allow_abbrev=False
         )
