@@ -59,16 +59,16 @@ def frame_values(
     view: "View",
     size: tuple[int, int],
     *,
-    harmonics: NDArray[np.float64] | None,
-    specular_levels: int,
-    light_count: int,
-    sample_range: tuple[int, int, int, int],
+    harmonics: NDArray[np.float64] | None = None,
+    specular_levels: int = 1,
+    light_count: int = 0,
+    sample_range: tuple[int, int, int, int] = (0, 0, 0, 0),
     triangle_bits: int = 0,
 ) -> NDArray[np.void]:
     """The block for ``scene`` seen by ``view`` in a picture of ``size``.
 
-    ``harmonics`` (9, 3) are those of irradiance, if it comes from them;
-    ``sample_range`` is the parameter of that name.
+    The rest is for what is lit: ``harmonics`` (9, 3) are those of irradiance,
+    if it comes from them, ``sample_range`` is the parameter of that name.
     """
     rotation = scene.environment_rotation
     height = size[1]

@@ -18,20 +18,15 @@ from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.passes import FullscreenPasses
 from moka.lighting.disk_cache import DiskCache
-from moka.lighting.environment import (
-    AUTO_SUNS,
-    BRIGHTEST,
-    Environment,
-    Sun,
-)
+from moka.lighting.environment import BRIGHTEST, Environment, Sun
 from moka.lighting.environment_lighting import (
     EnvironmentLighting,
     LightingRequest,
 )
 from moka.lighting.environment_maps import EnvironmentMaps
 from moka.lighting.lighting_maker import LightingMaker
+from moka.renderer.map_needs import MapNeeds
 from moka.renderer.permutation import lights_layout
-from moka.renderer.settings import MOST_SUNS
 from moka.renderer.view import turn_matrix
 from moka.scene.lights import LIGHT
 from moka.scene.scene import Scene
@@ -39,61 +34,12 @@ from moka.scene.scene import Scene
 if TYPE_CHECKING:
     from moka.lighting.preintegration_passes import Told
 
-__all__ = ["LightSources", "MadeLighting", "MapNeeds", "light_capacity"]
+__all__ = ["LightSources", "MadeLighting", "light_capacity"]
 
 # 16 KiB of uniform block hold this many.
 MOST_LIGHTS = 256
 # Above the one light that shaders have a case for.
 _SMALLEST_CAPACITY = 4
-
-
-class MapNeeds(Struct, frozen=True):
-    """What of an environment a picture shows.
-
-    ``specular`` and ``irradiance`` are what surfaces reflect; ``suns``,
-    ``irradiance_as``, ``ibl`` and ``reflections`` are RenderSettings'
-    ``suns``, ``irradiance``, ``ibl`` and ``reflections``. With ``blurred``
-    the background is read from the specular cube. Reference lighting samples
-    the map as it is, and the environment's own suns as discs.
-    """
-
-    background: bool
-    specular: bool
-    irradiance: bool
-    suns: str | int = "auto"
-    irradiance_as: str = "auto"
-    ibl: str = "split-sum"
-    reflections: str = "full"
-    blurred: bool = False
-
-    def request(
-        self, environment: Environment | None
-    ) -> LightingRequest | None:
-        """What to make of ``environment``; None for nothing."""
-        reflects = self.specular or self.irradiance
-        specular = self.specular or self.blurred
-        if environment is None or not (self.background or reflects or specular):
-            return None
-        if self.ibl == "reference" and reflects:
-            return LightingRequest(
-                environment,
-                MOST_SUNS,
-                self.irradiance_as,
-                background=True,
-                specular=self.blurred,
-                sampled=True,
-                half=self.reflections == "half",
-            )
-        return LightingRequest(
-            environment,
-            _most_suns(self.suns),
-            self.irradiance_as,
-            background=self.background,
-            specular=specular,
-            irradiance=self.irradiance,
-            radiance=self.ibl == "filtered" and specular,
-            half=self.reflections == "half",
-        )
 
 
 class MadeLighting(Struct, frozen=True, eq=False):
@@ -284,12 +230,6 @@ def light_capacity(count: int) -> int:
     if count < 2:
         return count
     return max(_SMALLEST_CAPACITY, 1 << math.ceil(math.log2(count)))
-
-
-def _most_suns(suns: str | int) -> int:
-    if isinstance(suns, int):
-        return suns
-    return AUTO_SUNS if suns == "auto" else 0
 
 
 def _sun_rows(scene: Scene, suns: tuple[Sun, ...]) -> NDArray[np.void]:

@@ -37,6 +37,7 @@ from moka.material.description import (
 )
 from moka.material.material import Texture
 from moka.model.mesh import Primitive
+from moka.renderer.frame_order import LAYER_BLENDED, LAYER_MASK, LAYER_OPAQUE
 from moka.renderer.geometry import GeometryPool, JoinedMeshes
 from moka.renderer.material_table import MaterialTable
 from moka.renderer.permutation import (
@@ -53,17 +54,10 @@ if TYPE_CHECKING:
     from moka.scene.live_materials import LiveMaterials
 
 __all__ = [
-    "LAYER_BACKGROUND",
     "PreparedScene",
     "SharedBindings",
     "VisibleSurface",
 ]
-
-# The frame's order within the scene pass.
-LAYER_OPAQUE = 0
-LAYER_MASK = 1
-LAYER_BACKGROUND = 2
-LAYER_BLENDED = 3
 
 # One row per primitive: what its draws bind, whatever their transforms.
 _ROW = np.dtype(

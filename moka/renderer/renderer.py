@@ -13,11 +13,11 @@ What does not change between frames is prepared once
 cull, key, gather (:mod:`moka.renderer.gather`).
 """
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from functools import partial
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from moka.commands.command_list import CommandList
@@ -25,50 +25,42 @@ from moka.commands.commands import Readback
 from moka.commands.descriptors import BufferDescriptor, BufferUsage
 from moka.commands.handles import Handle
 from moka.commands.sort_key import SortKey, Stage
-from moka.core.errors import DeviceError
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
-from moka.graphics.passes import FullscreenPasses
-from moka.graphics.program_cache import ProgramCache
 from moka.graphics.shader_source import forget_shaders
 from moka.lighting.disk_cache import DiskCache
-from moka.renderer.frame_block import FRAME, frame_values
-from moka.renderer.geometry import GeometryPool
-from moka.renderer.light_sources import (
-    LightSources,
-    MadeLighting,
-    MapNeeds,
-    light_capacity,
+from moka.renderer.frame_block import FRAME
+from moka.renderer.frame_order import (
+    LAYER_BACKGROUND,
+    PASS_ACCUMULATE,
+    PASS_DISPLAY,
+    PASS_READ,
+    PASS_SCENE,
 )
+from moka.renderer.frame_scene import FrameScene, radiance_key
+from moka.renderer.frame_targets import FrameTargets
+from moka.renderer.light_sources import LightSources, MadeLighting
+from moka.renderer.map_needs import map_needs
 from moka.renderer.material_pool import MaterialPool
-from moka.renderer.prepared_scene import LAYER_BACKGROUND, PreparedScene
 from moka.renderer.progressive import Progressive
-from moka.renderer.scene_materials import SceneMaterials
+from moka.renderer.scene_pass import ScenePass
 from moka.renderer.scene_preparation import ScenePreparation
 from moka.renderer.screen_passes import ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
+from moka.renderer.shared_pools import SharedPools
 from moka.renderer.sky_map import SkyMap
 from moka.renderer.targets import Targets
-from moka.renderer.view import View, look_through
 from moka.renderer.visibility_choice import VisibilityChoice
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene
 
 if TYPE_CHECKING:
     from moka.model.mesh import Primitive
-    from moka.renderer.debug_view import DebugPass
     from moka.renderer.geometry import Upload
-    from moka.renderer.surface_values import SurfaceValues, ValueTargets
-    from moka.renderer.visibility_buffer import VisibilityBuffer
+    from moka.renderer.surface_pictures import SurfacePictures
+    from moka.renderer.surface_values import ValueTargets
 
 __all__ = ["Renderer"]
-
-PASS_SCENE = 1
-PASS_ACCUMULATE = 2
-PASS_DISPLAY = 3
-PASS_VALUES = 4
-PASS_DEBUG = 5
-PASS_READ = 6
 
 
 class Renderer:
@@ -114,62 +106,53 @@ class Renderer:
         self.area: tuple[int, int, int, int] | None = None
         self.at_centres = False
         self._to_window = to_window
-        self._cache = cache
         self._is_guest = beside is not None
-        if beside is None:
-            self._passes = FullscreenPasses(device)
-            self._programs = ProgramCache(device)
-            self._geometry = GeometryPool(device)
-            self._materials = materials or MaterialPool(device, self.statistics)
-        else:
-            self._passes = beside._passes
-            self._programs = beside._programs
-            self._geometry = beside._geometry
-            self._materials = beside._materials
-            cache = beside._cache
-        passes = self._passes
+        self._pools: SharedPools = (
+            SharedPools(device, self.statistics, materials, cache)
+            if beside is None
+            else beside._pools
+        )
+        passes = self._pools.passes
         self._progressive = Progressive(device, passes)
         self._screen = ScreenPasses(device, passes)
-        self._sky_map = SkyMap(device)
-        self._sources = LightSources(device, passes, self.statistics, cache)
+        self._sources = LightSources(
+            device, passes, self.statistics, self._pools.cache
+        )
+        self._sky_map = SkyMap(device, self._sources)
         self._frame = device.create_buffer(
             BufferDescriptor(
                 BufferUsage.UNIFORM, FRAME.size, dynamic=True, label="frame"
             ),
             np.zeros(FRAME.size, np.uint8),
         )
-        self._targets: Targets | None = None
-        self._visibility_choice = VisibilityChoice(device, self._geometry)
-        self._visibility: VisibilityBuffer | None = None
+        self._targets = FrameTargets(
+            device, passes, (self._screen, self._progressive)
+        )
+        self._visibility_choice = VisibilityChoice(device, self._pools.geometry)
         # What the scene of the last frame has behind it, not drawn there.
         self._sky_behind: Sky | None = None
         self._scene = ScenePreparation(
+            device, self._frame, self._sources, self._pools
+        )
+        self._scene_pass = ScenePass(
             device,
             self._frame,
             self._sources,
-            self._programs,
-            self._geometry,
-            self._materials,
-            PASS_SCENE,
+            self._pools.geometry,
+            self._scene,
+            self._targets,
+            self._progressive,
         )
-        self._values: SurfaceValues | None = None
-        self._debug: DebugPass | None = None
+        self._pictures: SurfacePictures | None = None
 
     def close(self) -> None:
         """Stop the decoding threads; resources go with the device."""
         if not self._is_guest:
-            self._materials.close()
+            self._pools.materials.close()
 
     def release_targets(self) -> None:
         """Give back what pictures are drawn into, until the next one."""
-        if self._visibility is not None:
-            self._visibility.destroy()
-            self._visibility = None
-        if self._targets is not None:
-            self._screen.forget()
-            self._progressive.forget()
-            self._targets.destroy()
-            self._targets = None
+        self._targets.release()
 
     def reload_shaders(self) -> int:
         """Compile the shaders whose files have changed; says how many.
@@ -179,12 +162,12 @@ class Renderer:
         """
         forget_shaders()
         try:
-            return self._programs.reload() + self._passes.reload()
+            return self._pools.programs.reload() + self._pools.passes.reload()
         finally:
             # What is prepared names programs by handles that may be gone.
             self._scene.forget()
-            if self._values is not None:
-                self._values.forget()
+            if self._pictures is not None:
+                self._pictures.forget()
 
     @property
     def has_lighting_to_keep(self) -> bool:
@@ -210,21 +193,13 @@ class Renderer:
         how many; what it raises ends it. Raises ImageFileError for an image
         that cannot be had.
         """
-        materials = self._materials.begin_primitives(
-            primitives, self.settings.textures
+        return self._pools.prepare_geometry(
+            primitives, self.settings.textures, told
         )
-        attributes = [each.attributes for each in materials.descriptions]
-        # While the images decode.
-        uploads = self._geometry.make(
-            list(zip(primitives, attributes, strict=True)),
-            partial(told, "meshes"),
-        )
-        self._materials.finish(materials, partial(told, "images"))
-        return uploads
 
     def adopt_geometry(self, uploads: "list[Upload]") -> None:
         """Have what was prepared for a scene that is drawn next."""
-        self._geometry.adopt(uploads)
+        self._pools.geometry.adopt(uploads)
 
     def prepare_lighting(
         self,
@@ -240,7 +215,7 @@ class Renderer:
         ``told`` gets how many pieces are done, and of how many; what it
         raises ends it.
         """
-        needs = _map_needs(scene, settings, is_lit=True, has_diffuse=True)
+        needs = map_needs(scene, settings, is_lit=True, has_diffuse=True)
         return self._sources.prepare(environment, needs, told)
 
     def adopt_lighting(self, lighting: MadeLighting) -> None:
@@ -254,54 +229,34 @@ class Renderer:
         Raises ModelError or ImageFileError for what a material needs and
         cannot be had.
         """
-        scene.update()
-        materials = self._materials.describe(
-            scene, camera, self.size, self.settings.textures
-        )
-        self._scene.update_poses(scene, materials)
-        width, height = self.size
-        is_reversed = self.device.info.clip_control
-        view = look_through(camera, width / height, reversed_z=is_reversed)
+        seen = self._look(scene, camera)
         # Before anything that may have to wait for images.
         samples = self._visibility_choice.samples(
-            self.settings, materials, scene.drawables
+            self.settings, seen.materials, scene.drawables
         )
-        targets = self._update_targets(samples)
-        self._update_maps(scene, materials)
-        lights = self._sources.rows(scene, view.position)
-        prepared = self._scene.update(
-            scene,
-            materials,
-            self.settings,
-            lights,
-            float_target=self._has_float_target,
-            logarithmic_depth=view.depth_range is not None,
-            visibility=samples,
-        )
-        visible = self._visible(scene, camera)
-        if self._accumulates:
+        targets = self._targets.update(self.size, self.settings, samples)
+        self._update_maps(seen)
+        lights = self._sources.rows(scene, seen.view.position)
+        prepared = self._scene.update(seen, self.settings, lights, samples)
+        if self.settings.accumulates:
             self._progressive.begin(
-                self._picture_key(scene, view, lights),
+                radiance_key(seen, self._scene.key, lights),
                 targets,
                 self.settings.sample_budget,
                 self.settings.max_error,
                 self.area,
             )
-            if not self.at_centres:
-                view = view.jittered(self._progressive.jitter, self.size)
-        if not self._accumulates or not self._progressive.is_finished:
-            self._draw_scene(
-                scene, view, lights, visible, targets, prepared, commands
-            )
+        if not self.settings.accumulates or not self._progressive.is_finished:
+            self._draw_scene(seen, lights, targets, commands)
         self._draw_display(scene, targets, commands)
-        self._count(scene, prepared, len(visible))
+        self._count(seen, prepared.permutation_count)
 
     def read_display(self, commands: CommandList) -> Readback:
         """Read the tone mapped bytes (H, W, 4), bottom row first.
 
         To be recorded after :meth:`draw`.
         """
-        return self._read(commands, self._current_targets.display, "u1")
+        return self._read(commands, self._targets.current.display, "u1")
 
     def read_radiance(self, commands: CommandList) -> Readback:
         """Read linear radiance (H, W, 4) float32, bottom row first.
@@ -309,7 +264,7 @@ class Renderer:
         Premultiplied by coverage; a background colour is not part of it. To
         be recorded after :meth:`draw`.
         """
-        targets = self._current_targets
+        targets = self._targets.current
         key = SortKey(PASS_READ)
         if targets.samples == 1 and self._sky_behind is None:
             return self._read(commands, targets.scene, "f4")
@@ -330,39 +285,9 @@ class Renderer:
         ``names`` are of :data:`moka.core.aov.AOVS`. Returns the targets that
         hold them until this is called again.
         """
-        from moka.renderer.surface_values import SurfaceValues, groups_of
-
-        scene.update()
-        materials = self._materials.describe(
-            scene, camera, self.size, self.settings.textures
-        )
-        self._scene.update_poses(scene, materials)
-        width, height = self.size
-        is_reversed = self.device.info.clip_control
-        view = look_through(camera, width / height, reversed_z=is_reversed)
-        if self._values is None:
-            self._values = SurfaceValues(
-                self.device,
-                self._frame,
-                self._programs,
-                self._geometry,
-                self._materials.textures,
-            )
-        commands.fill_buffer(
-            self._frame,
-            self._frame_values(scene, view, 0),
-            key=SortKey(PASS_VALUES),
-        )
-        return self._values.draw(
-            scene,
-            materials,
-            view,
-            self._visible(scene, camera),
-            groups_of(names),
-            self.size,
-            commands,
-            PASS_VALUES,
-            self._scene.poses,
+        seen = self._look(scene, camera)
+        return self._surface_pictures().draw_values(
+            seen, names, self.size, commands
         )
 
     def draw_debug_view(
@@ -373,26 +298,12 @@ class Renderer:
         ``name`` is one of :data:`moka.renderer.debug_view.DEBUG_VIEWS`. It
         goes where :meth:`draw` would have the picture.
         """
-        from moka.renderer.debug_view import DEBUG_VIEWS, DebugPass
-
-        view = DEBUG_VIEWS[name]
-        values = self.draw_values(scene, camera, (view.value,), commands)
-        if self._debug is None:
-            self._debug = DebugPass(self.device, self._passes)
-        bounds = scene.bounds()
-        distance = 1.0
-        if bounds is not None:
-            centre = np.mean(bounds, axis=0)
-            distance = float(np.linalg.norm(camera.position - centre)) or 1.0
-        target = None if self._to_window else self._update_targets().display
-        self._debug.draw(
-            view,
-            values,
-            distance,
-            commands,
-            SortKey(PASS_DEBUG),
-            target,
-            self.size,
+        seen = self._look(scene, camera)
+        target = None
+        if not self._to_window:
+            target = self._targets.update(self.size, self.settings).display
+        self._surface_pictures().draw_view(
+            seen, name, self.size, commands, target
         )
 
     def read_values(
@@ -417,7 +328,7 @@ class Renderer:
         Not before reference lighting has all its samples or, as far as the
         GPU has told, a small enough error.
         """
-        return not self._accumulates or self._progressive.is_finished
+        return not self.settings.accumulates or self._progressive.is_finished
 
     @property
     def lighting_statistics(self) -> dict[str, Any]:
@@ -426,7 +337,7 @@ class Renderer:
         samples, error = 0.0, None
         if settings.ibl == "filtered":
             samples = float(settings.ibl_samples)
-        elif self._accumulates:
+        elif settings.accumulates:
             self._progressive.take_report()
             samples = round(self._progressive.samples_per_pixel, 2)
             error = self._progressive.estimated_error
@@ -439,145 +350,44 @@ class Renderer:
     @property
     def has_drawn(self) -> bool:
         """Whether there is a picture to read."""
-        return self._targets is not None
+        return self._targets.exist
 
-    @property
-    def _accumulates(self) -> bool:
-        return self.settings.ibl == "reference"
+    def _look(self, scene: Scene, camera: Camera) -> FrameScene:
+        return self._scene.look(scene, camera, self.size, self.settings)
 
-    @property
-    def _has_float_target(self) -> bool:
-        return self.settings.float_output or self._accumulates
-
-    @property
-    def _current_targets(self) -> Targets:
-        if self._targets is None:
-            raise DeviceError("renderer: nothing has been drawn to read")
-        return self._targets
-
-    def _read(
-        self, commands: CommandList, framebuffer: Handle, dtype: str
-    ) -> Readback:
-        return commands.read_pixels(
-            framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
-        )
-
-    def _update_maps(self, scene: Scene, materials: SceneMaterials) -> None:
-        needs = _map_needs(
-            scene,
+    def _update_maps(self, seen: FrameScene) -> None:
+        needs = map_needs(
+            seen.scene,
             self.settings,
-            is_lit=materials.has_lit,
-            has_diffuse=materials.has_diffuse,
+            is_lit=seen.materials.has_lit,
+            has_diffuse=seen.materials.has_diffuse,
         )
-        if self._sources.update_maps(scene.environment, needs):
+        if self._sources.update_maps(seen.scene.environment, needs):
             self._screen.forget()
             self._sky_map.forget()
             self._scene.forget()
 
-    def _visible(self, scene: Scene, camera: Camera) -> NDArray[np.intp]:
-        width, height = self.size
-        pixels = 0.0 if self._accumulates else self.settings.cull_pixels
-        return np.flatnonzero(
-            scene.visible(camera, width / height, pixels / height)
-        )
-
-    def _update_targets(self, visible_samples: int = 0) -> Targets:
-        settings = self.settings
-        samples = min(settings.samples, self.device.info.max_samples)
-        float_output = self._has_float_target
-        if self._accumulates:
-            samples = 1  # Edges are smooth by another point in every frame.
-        if visible_samples:
-            samples = 1  # The visibility buffer has them.
-        wanted = (self.size, samples, float_output)
-        if self._targets is None or self._targets.made_for != wanted:
-            self.release_targets()
-            self._targets = Targets(
-                self.device, self.size, samples, float_output=float_output
-            )
-        self._update_visibility(self._targets, visible_samples)
-        return self._targets
-
-    def _update_visibility(self, targets: Targets, samples: int) -> None:
-        visibility = self._visibility
-        if visibility is not None and visibility.made_for == (targets, samples):
-            return
-        if visibility is not None:
-            visibility.destroy()
-            self._visibility = None
-        if samples:
-            from moka.renderer.visibility_buffer import VisibilityBuffer
-
-            self._visibility = VisibilityBuffer(
-                self.device, self._passes, targets, samples
-            )
-
     def _draw_scene(
         self,
-        scene: Scene,
-        view: View,
+        seen: FrameScene,
         lights: NDArray[np.void],
-        visible: NDArray[np.intp],
         targets: Targets,
-        prepared: PreparedScene,
         commands: CommandList,
     ) -> None:
-        is_reversed = self.device.info.clip_control
-        capacity = light_capacity(len(lights)) if prepared.is_lit else 0
-        if self._scene.poses is not None:
-            self._scene.poses.update(visible, self._geometry, commands)
-        setup = commands.command_buffer(SortKey(PASS_SCENE))
-        setup.fill_buffer(
-            self._frame,
-            self._frame_values(
-                scene,
-                view,
-                len(lights),
-                prepared.visible_surface.triangle_bits
-                if prepared.visible_surface
-                else 0,
-            ),
+        settings = self.settings
+        if settings.accumulates and not self.at_centres:
+            jitter = self._progressive.jitter
+            seen = replace(seen, view=seen.view.jittered(jitter, self.size))
+        self._scene_pass.draw(
+            seen, settings, self.size, lights, self.area, commands
         )
-        if scene.live_materials is not None:
-            prepared.update_materials(scene.live_materials, setup)
-        if capacity:
-            setup.fill_buffer(
-                self._sources.buffer(capacity), lights.view(np.uint8)
-            )
-        # Black is opaque where the environment should be and is not.
-        is_dark = (
-            scene.background == "environment" and self._sources.maps.map is None
+        self._sky_behind = self._sky_map.behind(
+            seen.scene,
+            seen.view,
+            self.size[1],
+            float_target=settings.has_float_target,
         )
-        clear = (0.0, 0.0, 0.0, float(is_dark))
-        if self._visibility is not None:
-            self._visibility.begin(setup, self.area)
-        else:
-            setup.bind_framebuffer(targets.scene)
-            setup.clear(clear, 0.0 if is_reversed else 1.0)
-            if self._accumulates:
-                self._progressive.mask(setup, 1.0 if is_reversed else 0.0)
-            elif self.area is not None:
-                setup.scissor(self.area)
-        states = np.array(
-            [commands.state_index(state) for state in prepared.states],
-            np.uint32,
-        )
-        commands.use(prepared.handles)
-        draws, instances = self._scene.gatherer.gather(
-            scene.transforms, visible, view, states
-        )
-        commands.draws(draws, instances, in_order=True)
-        if self._visibility is not None:
-            self._visibility.shade(
-                commands,
-                SortKey(PASS_SCENE, LAYER_BACKGROUND),
-                prepared,
-                instances,
-                clear,
-                self.area,
-            )
-        self._sky_behind = self._sky(scene, view)
-        if self._accumulates:
+        if settings.accumulates:
             # What is averaged over frames has its sky in every one of them.
             if self._sky_behind is not None:
                 key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
@@ -586,69 +396,6 @@ class Renderer:
             self._progressive.accumulate(
                 commands, SortKey(PASS_ACCUMULATE), targets
             )
-
-    def _picture_key(
-        self, scene: Scene, view: View, lights: NDArray[np.void]
-    ) -> Hashable:
-        """All that radiance depends on: the same while samples add up."""
-        return (
-            self._scene.key,
-            id(scene.environment),
-            scene.environment_rotation,
-            scene.environment_intensity,
-            scene.background == "environment",
-            scene.background_blur,
-            scene.transforms.version,
-            scene.pose_version,
-            scene.visibility_version,
-            scene.live_materials and scene.live_materials.version,
-            view.position.tobytes(),
-            view.clip_from_world.tobytes(),
-            lights.tobytes(),
-        )
-
-    def _frame_values(
-        self,
-        scene: Scene,
-        view: View,
-        light_count: int,
-        triangle_bits: int = 0,
-    ) -> NDArray[np.void]:
-        samples = (0, self.settings.ibl_samples, 0, 0)
-        if self._accumulates:
-            samples = self._progressive.sample_range
-        return frame_values(
-            scene,
-            view,
-            self.size,
-            harmonics=self._sources.harmonics,
-            specular_levels=self._sources.maps.specular_levels,
-            light_count=light_count,
-            sample_range=samples,
-            triangle_bits=triangle_bits,
-        )
-
-    def _sky(self, scene: Scene, view: View) -> Sky | None:
-        environment_map = self._sources.maps.map
-        if scene.background != "environment" or environment_map is None:
-            return None
-        cube, suns = None, scene.environment.suns
-        if scene.background_blur > 0.0:
-            cube, suns = self._sources.maps.specular, self._sources.suns
-        elif self._sources.map_shows_suns:
-            environment_map = self._sky_map.without_suns(scene.environment)
-        return Sky(
-            environment_map,
-            view,
-            rotation=scene.environment_rotation,
-            intensity=scene.environment_intensity,
-            float_target=self._has_float_target,
-            suns=suns,
-            height=self.size[1],
-            cube=cube,
-            levels=self._sources.maps.specular_levels,
-            blur=scene.background_blur,
-        )
 
     def _draw_display(
         self, scene: Scene, targets: Targets, commands: CommandList
@@ -667,34 +414,29 @@ class Renderer:
             area=self.area,
         )
 
-    def _count(
-        self, scene: Scene, prepared: PreparedScene, visible: int
-    ) -> None:
-        objects = scene.drawables.total
+    def _surface_pictures(self) -> "SurfacePictures":
+        if self._pictures is None:
+            from moka.renderer.surface_pictures import SurfacePictures
+
+            self._pictures = SurfacePictures(
+                self.device, self._frame, self._pools
+            )
+        return self._pictures
+
+    def _read(
+        self, commands: CommandList, framebuffer: Handle, dtype: str
+    ) -> Readback:
+        return commands.read_pixels(
+            framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
+        )
+
+    def _count(self, seen: FrameScene, permutations: int) -> None:
+        objects, visible = seen.scene.drawables.total, len(seen.visible)
         for name, value in (
             ("objects", objects),
             ("visible", visible),
             ("culled", objects - visible),
-            ("programs", len(self._programs)),
-            ("permutations", prepared.permutation_count),
+            ("programs", len(self._pools.programs)),
+            ("permutations", permutations),
         ):
             self.statistics.set_count(name, value)
-
-
-def _map_needs(
-    scene: Scene, settings: RenderSettings, *, is_lit: bool, has_diffuse: bool
-) -> MapNeeds:
-    """What of an environment ``scene`` shows, whichever it is."""
-    shows_irradiance = is_lit and settings.light_part == "irradiance"
-    reflects = settings.ibl != "off"
-    has_background = scene.background == "environment"
-    return MapNeeds(
-        background=has_background,
-        specular=is_lit and reflects,
-        irradiance=(has_diffuse or shows_irradiance) and reflects,
-        suns=settings.suns if reflects else "off",
-        irradiance_as=settings.irradiance,
-        ibl=settings.ibl,
-        reflections=settings.reflections,
-        blurred=has_background and scene.background_blur > 0.0,
-    )

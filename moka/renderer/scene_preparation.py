@@ -7,15 +7,17 @@ from numpy.typing import NDArray
 
 from moka.commands.handles import Handle
 from moka.graphics.device import GraphicsDevice
-from moka.graphics.program_cache import ProgramCache
+from moka.renderer.frame_order import PASS_SCENE
+from moka.renderer.frame_scene import FrameScene
 from moka.renderer.gather import DrawGatherer
-from moka.renderer.geometry import GeometryPool
 from moka.renderer.light_sources import LightSources, light_capacity
-from moka.renderer.material_pool import MaterialPool
 from moka.renderer.permutation import LightingDescription
 from moka.renderer.prepared_scene import PreparedScene, SharedBindings
 from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.settings import RenderSettings
+from moka.renderer.shared_pools import SharedPools
+from moka.renderer.view import look_through
+from moka.scene.camera import Camera
 from moka.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -27,10 +29,8 @@ __all__ = ["ScenePreparation"]
 class ScenePreparation:
     """The prepared scene of one renderer, and what gathers its draws.
 
-    ``frame`` is the uniform buffer of the block ``Frame``, ``pass_`` the
-    frame's pass that the draws belong to. ``poses`` is the texture of what
-    moves within itself, None where nothing does. ``key`` is another one when
-    anything has been made anew.
+    ``frame`` is the uniform buffer of the block ``Frame``. ``key`` is another
+    one when anything has been made anew.
     """
 
     prepared: PreparedScene
@@ -41,77 +41,90 @@ class ScenePreparation:
         device: GraphicsDevice,
         frame: Handle,
         sources: LightSources,
-        programs: ProgramCache,
-        geometry: GeometryPool,
-        materials: MaterialPool,
-        pass_: int,
+        pools: SharedPools,
     ) -> None:
         self._device = device
         self._frame = frame
         self._sources = sources
-        self._programs = programs
-        self._geometry = geometry
-        self._materials = materials
-        self._pass = pass_
+        self._pools = pools
         self._has_prepared = False
-        self.poses: PoseTexture | None = None
+        self._poses: PoseTexture | None = None
         self.key: object = None
 
     def forget(self) -> None:
         """Make everything anew: programs or maps may be others."""
         self.key = None
 
-    def update_poses(self, scene: Scene, materials: SceneMaterials) -> None:
+    def look(
+        self,
+        scene: Scene,
+        camera: Camera,
+        size: tuple[int, int],
+        settings: RenderSettings,
+    ) -> FrameScene:
+        """Bring ``scene`` up to date, and see it in a picture of ``size``."""
+        scene.update()
+        materials = self._pools.materials.describe(
+            scene, camera, size, settings.textures
+        )
+        self._update_poses(scene, materials)
+        width, height = size
+        view = look_through(
+            camera, width / height, reversed_z=self._device.info.clip_control
+        )
+        smallest = 0.0 if settings.accumulates else settings.cull_pixels
+        visible = scene.visible(camera, width / height, smallest / height)
+        return FrameScene(
+            scene, materials, view, np.flatnonzero(visible), self._poses
+        )
+
+    def _update_poses(self, scene: Scene, materials: SceneMaterials) -> None:
         """Have the texture of what moves within itself, if anything does."""
-        if self.poses is not None:
-            if self.poses.made_for is materials:
+        if self._poses is not None:
+            if self._poses.made_for is materials:
                 return
-            self.poses.destroy()
-            self.poses = None
+            self._poses.destroy()
+            self._poses = None
         poses = scene.drawables.poses
         if poses is not None:
             from moka.renderer.pose_texture import PoseTexture
 
-            self.poses = PoseTexture(
+            self._poses = PoseTexture(
                 self._device, poses, scene.drawables.primitives, materials
             )
 
     def update(
         self,
-        scene: Scene,
-        materials: SceneMaterials,
+        seen: FrameScene,
         settings: RenderSettings,
         lights: NDArray[np.void],
-        *,
-        float_target: bool,
-        logarithmic_depth: bool,
         visibility: int = 0,
     ) -> PreparedScene:
-        """What a frame of ``scene`` needs, made if it is not there.
+        """What a frame that has ``seen`` a scene needs, made if need be.
 
-        ``lights`` are the frame's rows of lights. After
-        :meth:`update_poses` and when the maps of the light are there.
+        ``lights`` are the frame's rows of lights, ``visibility`` is how many
+        samples of a pixel a visibility buffer has. After :meth:`look` and
+        when the maps of the light are there.
         """
+        materials, drawables = seen.materials, seen.scene.drawables
         capacity = light_capacity(len(lights)) if materials.has_lit else 0
         lighting = self._describe(
-            scene,
+            seen,
             settings,
             capacity,
             positional=bool(lights["positional"].any()),
-            float_target=float_target,
-            logarithmic_depth=logarithmic_depth,
             visibility=visibility,
         )
-        key = (self._materials.key, lighting)
+        key = (self._pools.materials.key, lighting)
         if self._has_prepared and self.key == key:
             return self.prepared
         if self._has_prepared:
             self.prepared.destroy()
-        sources, poses = self._sources, self.poses
+        sources, poses = self._sources, seen.poses
         needs_table = lighting.needs_table and materials.has_lit
         self.prepared = PreparedScene(
             self._device,
-            scene.drawables.primitives,
+            drawables.primitives,
             materials,
             lighting,
             SharedBindings(
@@ -121,17 +134,17 @@ class ScenePreparation:
                 sources.table(settings.brdf) if needs_table else None,
                 () if poses is None else poses.bindings,
             ),
-            self._programs,
-            self._geometry,
-            self._materials.textures,
+            self._pools.programs,
+            self._pools.geometry,
+            self._pools.materials.textures,
         )
         self._has_prepared = True
         self.key = key
         surface = self.prepared.visible_surface
         self.gatherer = DrawGatherer(
-            scene.drawables,
+            drawables,
             self.prepared,
-            self._pass,
+            PASS_SCENE,
             None if poses is None else poses.places,
             None if surface is None else surface.places,
             0 if surface is None else surface.triangle_bits,
@@ -140,13 +153,11 @@ class ScenePreparation:
 
     def _describe(
         self,
-        scene: Scene,
+        seen: FrameScene,
         settings: RenderSettings,
         capacity: int,
         *,
         positional: bool,
-        float_target: bool,
-        logarithmic_depth: bool,
         visibility: int,
     ) -> LightingDescription:
         maps = self._sources.maps
@@ -161,12 +172,12 @@ class ScenePreparation:
             settings.brdf,
             "lambert" if is_bare else settings.diffuse,
             settings.multiscatter and not is_bare,
-            float_target,
+            settings.has_float_target,
             self._sources.harmonics is not None,
             "split-sum" if is_plain else settings.ibl,
-            logarithmic_depth,
+            seen.view.depth_range is not None,
             positional,
-            scene.environment_rotation != 0,
+            seen.scene.environment_rotation != 0,
             settings.light_part,
             visibility=visibility,
         )

@@ -167,6 +167,16 @@ class RenderSettings(Struct, frozen=True):
         )
 
     @property
+    def accumulates(self) -> bool:
+        """Whether a picture is the mean of several frames."""
+        return self.ibl == "reference"
+
+    @property
+    def has_float_target(self) -> bool:
+        """Whether radiance is drawn as float32, not as half floats."""
+        return self.float_output or self.accumulates
+
+    @property
     def sample_budget(self) -> int:
         """Samples of a pixel after which reference lighting stops."""
         if self.reference_samples is not None:

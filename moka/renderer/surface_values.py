@@ -6,7 +6,7 @@ not compiled.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
@@ -27,17 +27,12 @@ from moka.core.aov import AOVS
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.program_cache import ProgramCache
 from moka.lighting.environment_maps import EnvironmentMaps
+from moka.renderer.frame_scene import FrameScene
 from moka.renderer.gather import DrawGatherer
 from moka.renderer.geometry import GeometryPool
 from moka.renderer.permutation import LightingDescription
 from moka.renderer.prepared_scene import PreparedScene, SharedBindings
-from moka.renderer.scene_materials import SceneMaterials
 from moka.renderer.textures import TexturePool
-from moka.renderer.view import View
-from moka.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from moka.renderer.pose_texture import PoseTexture
 
 __all__ = [
     "GROUPS",
@@ -169,24 +164,21 @@ class SurfaceValues:
 
     def draw(
         self,
-        scene: Scene,
-        materials: SceneMaterials,
-        view: View,
-        visible: NDArray[np.intp],
+        seen: FrameScene,
         groups: tuple[str, ...],
         size: tuple[int, int],
         commands: CommandList,
         pass_: int,
-        poses: "PoseTexture | None" = None,
     ) -> ValueTargets:
-        """Record the draws ``visible`` (V,) of ``scene`` as pass ``pass_``.
+        """Record the draws of what is ``seen`` as pass ``pass_``.
 
         Returns the targets, cleared to 0 where nothing is; they are valid
         until the next call.
         """
-        prepared = self._prepare(scene, materials, view, groups, poses, pass_)
-        if poses is not None:
-            poses.update(visible, self._pools[1], commands)
+        scene, visible = seen.scene, seen.visible
+        prepared = self._prepare(seen, groups, pass_)
+        if seen.poses is not None:
+            seen.poses.update(visible, self._pools[1], commands)
         targets = self._update_targets(size, groups)
         is_reversed = self._device.info.clip_control
         buffer = commands.command_buffer(SortKey(pass_))
@@ -203,7 +195,7 @@ class SurfaceValues:
             *self._gatherer.gather(
                 scene.transforms,
                 visible,
-                view,
+                seen.view,
                 np.array(states, np.uint32),
             ),
             in_order=True,
@@ -215,13 +207,7 @@ class SurfaceValues:
         self._prepared_key = None
 
     def _prepare(
-        self,
-        scene: Scene,
-        materials: SceneMaterials,
-        view: View,
-        groups: tuple[str, ...],
-        poses: "PoseTexture | None",
-        pass_: int,
+        self, seen: FrameScene, groups: tuple[str, ...], pass_: int
     ) -> PreparedScene:
         lighting = LightingDescription(
             environment=False,
@@ -230,18 +216,19 @@ class SurfaceValues:
             diffuse="",
             multiscatter=False,
             float_target=True,
-            logarithmic_depth=view.depth_range is not None,
+            logarithmic_depth=seen.view.depth_range is not None,
             values=groups,
         )
-        key = (materials, lighting)
+        poses = seen.poses
+        key = (seen.materials, lighting)
         if self._prepared is not None and self._prepared_key == key:
             return self._prepared
         if self._prepared is not None:
             self._prepared.destroy()
         self._prepared = PreparedScene(
             self._device,
-            scene.drawables.primitives,
-            materials.without_blending(),
+            seen.scene.drawables.primitives,
+            seen.materials.without_blending(),
             lighting,
             SharedBindings(
                 self._frame,
@@ -254,7 +241,7 @@ class SurfaceValues:
         )
         self._prepared_key = key
         self._gatherer = DrawGatherer(
-            scene.drawables,
+            seen.scene.drawables,
             self._prepared,
             pass_,
             None if poses is None else poses.places,

@@ -70,7 +70,7 @@ class VisibilityChoice:
     def _is_wanted(self, settings: RenderSettings) -> bool:
         info = self._device.info
         return (
-            settings.ibl != "reference"  # which averages edges over frames
+            not settings.accumulates  # which smooths edges over frames
             and info.clip_control
             and (
                 settings.shading == "visibility"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from moka.commands.command_list import CommandList
 from moka.commands.commands import Timestamps
 from moka.commands.sort_key import SortKey
-from moka.renderer.renderer import (
+from moka.renderer.frame_order import (
     PASS_ACCUMULATE,
     PASS_DEBUG,
     PASS_DISPLAY,

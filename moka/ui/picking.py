@@ -10,7 +10,8 @@ from moka.commands.command_list import CommandList
 from moka.commands.commands import Readback
 from moka.commands.sort_key import SortKey
 from moka.model.cameras import Orthographic
-from moka.renderer.renderer import PASS_READ, Renderer
+from moka.renderer.frame_order import PASS_READ
+from moka.renderer.renderer import Renderer
 from moka.renderer.surface_values import unpack_values
 from moka.scene.camera import Camera
 from moka.scene.scene import Scene

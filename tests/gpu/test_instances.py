@@ -140,7 +140,7 @@ def test_variants_are_switched_without_new_geometry(
             renderer.draw(scene, square_camera(), commands)
             read = renderer.read_radiance(commands)
             egl_device.submit(commands).wait()
-            meshes.append(set(renderer._geometry._meshes.values()))
+            meshes.append(set(renderer._pools.geometry._meshes.values()))
             seen.append(read.data[16, 16, :3].tolist())
     finally:
         renderer.close()

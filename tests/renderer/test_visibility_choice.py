@@ -105,8 +105,7 @@ def test_it_is_for_rigid_triangles_of_one_program(name: str) -> None:
     with drawn(UNSUITED[name](), shading="visibility") as (_, renderer):
         assert renderer.has_drawn
         # Samples are where they were.
-        assert renderer._targets is not None
-        assert renderer._targets.samples == 4
+        assert renderer._targets.current.samples == 4
 
 
 def test_materials_have_to_fit_one_page() -> None:

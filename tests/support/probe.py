@@ -34,7 +34,8 @@ from moka.lighting.environment import Environment
 from moka.lighting.environment_maps import CUBE_SAMPLER
 from moka.material.description import Feature
 from moka.renderer.frame_block import FRAME
-from moka.renderer.light_sources import LightSources, MapNeeds, light_capacity
+from moka.renderer.light_sources import LightSources, light_capacity
+from moka.renderer.map_needs import MapNeeds
 from moka.renderer.permutation import LightingDescription, lights_layout
 from moka.scene.scene import Scene
 
