@@ -53,13 +53,3 @@ class EmbeddedBackend(ModernGLBackend):
         """See :class:`moka.backend.protocol.Backend`."""
         super().create_program(handle, descriptor)
         self._units = max(self._units, len(self._get(handle).samplers))
-
-    def close(self) -> None:
-        """Free also what otherwise goes with the context."""
-        if self._closed:
-            return
-        for array in self._arrays.values():
-            array.release()
-        self._instances.release()
-        self._commands.release()
-        super().close()

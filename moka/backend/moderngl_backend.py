@@ -1,8 +1,6 @@
-"""The backend over ModernGL: executes recordings on the render thread.
+"""The backend over ModernGL: GL's objects by their handles, and frames.
 
-GL 3.3 core is enough. Where the driver has multi-draw-indirect with a base
-instance (4.3), a batch of any size is one call; below, it is one call per
-mesh, with the instance attributes pointed at its rows.
+All of it is called on the render thread. GL 3.3 core is enough.
 """
 
 import contextlib
@@ -14,21 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.backend import gl_constants as c
-from moka.backend.batching import INDIRECT, Batches, MeshTable, merge_draws
 from moka.backend.contexts import GraphicsContext, WindowContext
 from moka.backend.gl_buffer_texture import GlBufferTexture
 from moka.backend.gl_commands import CommandRunner
+from moka.backend.gl_draws import DrawRunner
 from moka.backend.gl_functions import Functions
 from moka.backend.gl_info import read_info
-from moka.backend.gl_programs import (
-    Bindings,
-    BlockRegistry,
-    GlProgram,
-    VertexSource,
-    bind_instances,
-    make_vertex_array,
-    match_bindings,
-)
+from moka.backend.gl_programs import BlockRegistry, GlProgram
 from moka.backend.gl_readback import PixelReader
 from moka.backend.gl_state import StateCache
 from moka.backend.gl_textures import GlFramebuffer, GlTexture, SamplerCache
@@ -43,7 +33,6 @@ from moka.commands.descriptors import (
     TextureDescriptor,
     TextureKind,
 )
-from moka.commands.draws import INSTANCE
 from moka.commands.handles import Handle, ResourceKind
 from moka.commands.recording import DrawSpan, Recording
 from moka.core.errors import DeviceError, ShaderError
@@ -90,16 +79,13 @@ class ModernGLBackend:
         self._blocks = BlockRegistry()
         # Resources by the slots of their handles.
         self._resources: dict[tuple[ResourceKind, int], Any] = {}
-        self._meshes = MeshTable()
-        self._sources: list[VertexSource] = []
-        self._source_numbers: dict[VertexSource, int] = {}
-        self._bindings: dict[tuple[int, int], Bindings] = {}
-        self._arrays: dict[tuple[int, int], Any] = {}
-        self._instances = self._ctx.buffer(
-            reserve=INSTANCE.itemsize, dynamic=True
-        )
-        self._commands = self._ctx.buffer(
-            reserve=INDIRECT.itemsize, dynamic=True
+        self._draws = DrawRunner(
+            self._ctx,
+            self._gl,
+            self._state,
+            self._samplers,
+            self._resources,
+            multi_draw=self.info.multi_draw_indirect,
         )
         self._uploaded = 0
         self._closed = False
@@ -205,24 +191,7 @@ class ModernGLBackend:
 
     def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
-        source = VertexSource(
-            descriptor.topology,
-            descriptor.layout,
-            descriptor.vertex_buffer,
-            descriptor.index_buffer,
-            descriptor.index_type,
-        )
-        number = self._source_numbers.setdefault(source, len(self._sources))
-        if number == len(self._sources):
-            self._sources.append(source)
-        self._meshes.put(
-            handle.index,
-            count=descriptor.count,
-            first=descriptor.first,
-            base_vertex=descriptor.base_vertex,
-            source=number,
-            indexed=descriptor.index_buffer is not None,
-        )
+        self._draws.add_mesh(handle, descriptor)
 
     def create_framebuffer(
         self, handle: Handle, descriptor: FramebufferDescriptor
@@ -240,13 +209,7 @@ class ModernGLBackend:
     def destroy(self, handle: Handle) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
         resource = self._resources.pop((handle.kind, handle.index), None)
-        if handle.kind is ResourceKind.PROGRAM:
-            self._drop(self._bindings, 0, handle.index)
-            self._drop(self._arrays, 0, handle.index)
-        elif handle.kind is ResourceKind.BIND_GROUP:
-            self._drop(self._bindings, 1, handle.index)
-        elif handle.kind is ResourceKind.BUFFER:
-            self._drop_sources(handle)
+        self._draws.forget(handle)
         if resource is not None and hasattr(resource, "release"):
             resource.release()
         # GL names are reused: what the cache says is bound may be gone.
@@ -273,15 +236,11 @@ class ModernGLBackend:
         begun = len(self._reader)
         self._state.counters = counters
         counters.draw_packets = len(recording.draws)
-        batches = merge_draws(recording, self._meshes)
-        self._upload(recording.instances, self._instances)
-        if self.info.multi_draw_indirect:
-            self._upload(batches.commands, self._commands)
-            self._gl.BindBuffer(c.DRAW_INDIRECT_BUFFER, self._commands.glo)
+        batches = self._draws.begin(recording, counters)
         for step in recording.steps:
             if isinstance(step, DrawSpan):
                 for batch in batches.of_span[step.start]:
-                    self._draw(batches, batch, recording, counters)
+                    self._draws.draw(batches, batch, recording, counters)
             else:
                 self._runner.run(step)
         # What frames before this one read, now that the GPU has work again.
@@ -332,6 +291,7 @@ class ModernGLBackend:
             return
         self._closed = True
         with contextlib.suppress(Exception):
+            self._draws.release()
             for resource in self._resources.values():
                 if hasattr(resource, "release"):
                     resource.release()
@@ -339,7 +299,6 @@ class ModernGLBackend:
             self._reader.release()
             self._runner.release()
         self._resources.clear()
-        self._arrays.clear()
         self._context.close()
 
     def _set_defaults(self) -> None:
@@ -367,126 +326,6 @@ class ModernGLBackend:
 
     def _get(self, handle: Handle) -> Any:
         return self._resources[handle.kind, handle.index]
-
-    @staticmethod
-    def _drop(cache: dict[tuple[int, int], Any], part: int, slot: int) -> None:
-        for key in [key for key in cache if key[part] == slot]:
-            entry = cache.pop(key)
-            if hasattr(entry, "release"):
-                entry.release()
-
-    def _drop_sources(self, buffer: Handle) -> None:
-        for source in [
-            source
-            for source in self._source_numbers
-            if buffer in (source.vertex_buffer, source.index_buffer)
-        ]:
-            # Numbers are never given out again, so that a mesh that still
-            # names one cannot draw from another buffer.
-            self._drop(self._arrays, 1, self._source_numbers.pop(source))
-
-    def _upload(self, rows: NDArray[Any], buffer: Any) -> None:
-        if not len(rows):
-            return
-        # Orphaning lets the driver keep the last frame's copy while it is
-        # still being drawn from.
-        buffer.orphan(rows.nbytes)
-        buffer.write(np.ascontiguousarray(rows))
-        self._uploaded += rows.nbytes
-
-    def _draw(
-        self,
-        batches: Batches,
-        batch: int,
-        recording: Recording,
-        counters: FrameCounters,
-    ) -> None:
-        slot = batches.program[batch]
-        program: GlProgram = self._resources[ResourceKind.PROGRAM, slot]
-        number = batches.source[batch]
-        source = self._sources[number]
-        state = self._state
-        array = self._arrays.get((slot, number))
-        if array is None:
-            array = self._arrays[slot, number] = make_vertex_array(
-                self._ctx,
-                self._gl,
-                program,
-                source,
-                self._get,
-                self._instances,
-            )
-            state.forget("vertex_array")
-        state.program(program.name)
-        state.vertex_array(array.glo)
-        state.raster(recording.states[batches.state[batch]])
-        self._bind(slot, program, batches.bind_group[batch])
-        first, last = batches.start[batch], batches.start[batch + 1]
-        if self.info.multi_draw_indirect:
-            self._multi_draw(source, first, last - first)
-            counters.gl_draws += 1
-            return
-        for command in batches.commands[first:last]:
-            self._single_draw(array, program, source, command)
-            counters.gl_draws += 1
-
-    def _bind(self, slot: int, program: GlProgram, group: int) -> None:
-        bindings = self._bindings.get((slot, group))
-        if bindings is None:
-            bindings = self._bindings[slot, group] = match_bindings(
-                program,
-                self._resources[ResourceKind.BIND_GROUP, group],
-                self._get,
-                self._get,
-                self._samplers,
-            )
-        for texture in bindings.textures:
-            self._state.texture(*texture)
-        for block in bindings.blocks:
-            self._state.uniform_block(*block)
-
-    def _multi_draw(self, source: VertexSource, first: int, count: int) -> None:
-        offset = first * INDIRECT.itemsize
-        mode = c.TOPOLOGY[source.topology]
-        if source.index_buffer is None:
-            self._gl.MultiDrawArraysIndirect(
-                mode, offset, count, INDIRECT.itemsize
-            )
-        else:
-            self._gl.MultiDrawElementsIndirect(
-                mode,
-                c.INDEX_TYPE[source.index_type],
-                offset,
-                count,
-                INDIRECT.itemsize,
-            )
-
-    def _single_draw(
-        self, array: Any, program: GlProgram, source: VertexSource, command: Any
-    ) -> None:
-        mode = c.TOPOLOGY[source.topology]
-        if source.index_buffer is None:
-            # Without indices the base instance is the fourth word.
-            first_instance = int(command["base_vertex"])
-        else:
-            first_instance = int(command["base_instance"])
-        bind_instances(array, program, self._instances, first_instance)
-        # Binding attributes binds the vertex array, as a side effect.
-        count, instances = int(command["count"]), command["instance_count"]
-        if source.index_buffer is None:
-            self._gl.DrawArraysInstanced(
-                mode, int(command["first"]), count, int(instances)
-            )
-        else:
-            width = np.dtype(source.index_type.value).itemsize
-            self._gl.DrawElementsInstancedBaseVertex(
-                mode,
-                count,
-                c.INDEX_TYPE[source.index_type],
-                int(command["first"]) * width,
-                int(instances),
-                int(command["base_vertex"]),
-            )
 
     def _explain_log(self, log: str, descriptor: ProgramDescriptor) -> str:
         in_fragment = "fragment_shader" in log and "vertex_shader" not in log
