@@ -42,7 +42,11 @@ def read_info(
         vendor=info["GL_VENDOR"],
         renderer=info["GL_RENDERER"],
         version=info["GL_VERSION"],
-        max_samples=info["GL_MAX_SAMPLES"],
+        max_samples=min(
+            info["GL_MAX_COLOR_TEXTURE_SAMPLES"],
+            info["GL_MAX_DEPTH_TEXTURE_SAMPLES"],
+        ),
+        max_integer_samples=info["GL_MAX_INTEGER_SAMPLES"],
         max_texture_size=info["GL_MAX_TEXTURE_SIZE"],
         max_buffer_texels=info["GL_MAX_TEXTURE_BUFFER_SIZE"],
         # 0 where the driver does not have the extension.

@@ -32,6 +32,8 @@ TextureData = Sequence[NDArray[Any]]
 class BackendInfo(Struct, frozen=True):
     """Facts about the driver that layers above may act on.
 
+    ``max_samples`` are those of a texture that is drawn into,
+    ``max_integer_samples`` those of one of whole numbers.
     ``compressed_formats`` are those of blocks that it samples at no loss.
     """
 
@@ -40,6 +42,7 @@ class BackendInfo(Struct, frozen=True):
     renderer: str = ""
     version: str = ""
     max_samples: int = 1
+    max_integer_samples: int = 1
     max_texture_size: int = 2048
     max_buffer_texels: int = 65536
     max_anisotropy: float = 1.0

@@ -63,15 +63,19 @@ class VisibilityChoice:
             if self._is_wanted(settings) and self._suits(
                 settings, materials, drawables
             ):
-                most = self._device.info.max_samples
-                self._samples = min(settings.samples, most)
+                self._samples = self._drawn_samples(settings)
         return self._samples
+
+    def _drawn_samples(self, settings: RenderSettings) -> int:
+        return min(settings.samples, self._device.info.max_samples)
 
     def _is_wanted(self, settings: RenderSettings) -> bool:
         info = self._device.info
         return (
             not settings.accumulates  # which smooths edges over frames
             and info.clip_control
+            # Whole numbers can have fewer samples than radiance.
+            and self._drawn_samples(settings) <= info.max_integer_samples
             and (
                 settings.shading == "visibility"
                 # GPUs shade small blocks, and only what is seen of them.

@@ -19,7 +19,14 @@ from moka.material.material import (
     Texture,
     TextureTransform,
 )
-from moka.model import LightKind, Primitive, PunctualLight, cube, sphere
+from moka.model import (
+    LightKind,
+    Primitive,
+    PunctualLight,
+    cube,
+    quad,
+    sphere,
+)
 from moka.model.cameras import Orthographic, Perspective
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
@@ -236,6 +243,23 @@ def test_a_feature_looks_as_it_must(case: Case) -> None:
     options = {**case.options, "shading": "visibility"}
     outcome = replace(case, options=options).run()
     assert outcome.passed, (outcome.differing, outcome.mean)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_the_far_plane_is_nearer_than_nothing(
+    device: GraphicsDevice, samples: int
+) -> None:
+    """Depth is 0 there, as where no surface is."""
+    square = quad(1.0), Material(unlit=True), np.eye(4)
+    scene = scene_of([square], background="transparent")
+    camera = looking((0, 0, -1), 0.9, (0, 0, 4))
+    camera.projection = Orthographic(1.0, 1.0, 0.1, 4.0)
+    forward, seen = (
+        draw_radiance(device, scene, camera, SIZE, samples=samples, shading=how)
+        for how in ("forward", "visibility")
+    )
+    np.testing.assert_allclose(seen, forward, atol=1e-6)
+    assert forward[..., 3].mean() == pytest.approx(0.25, abs=0.02)
 
 
 def test_edges_between_surfaces_are_smooth(device: GraphicsDevice) -> None:

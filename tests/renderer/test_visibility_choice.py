@@ -31,6 +31,7 @@ SOFTWARE = BackendInfo(
     kind="recording",
     renderer="llvmpipe (LLVM 15.0)",
     max_samples=4,
+    max_integer_samples=4,
     clip_control=True,
     max_buffer_texels=1 << 20,
 )
@@ -165,6 +166,13 @@ def test_it_needs_depth_that_is_reversed_and_one_frame() -> None:
     plain = replace(SOFTWARE, clip_control=False)
     assert not is_used(ball(), info=plain, shading="visibility")
     assert not is_used(ball(), ibl="reference", shading="visibility")
+
+
+def test_numbers_of_triangles_need_as_many_samples_as_radiance() -> None:
+    """OpenGL 3.3 asks for one sample of whole numbers."""
+    info = replace(SOFTWARE, max_integer_samples=1)
+    assert not is_used(ball(), info=info, shading="visibility")
+    assert is_used(ball(), info=info, shading="visibility", samples=1)
 
 
 def test_what_comes_later_has_buffers_of_its_own() -> None:
