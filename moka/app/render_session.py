@@ -2,8 +2,9 @@
 
 Reading the environment and decoding images run in worker threads while the
 render thread makes the context and compiles; they meet at the first frame.
-Imports are in the order of this work: none above takes long, so that the
-driver loads while NumPy is imported.
+Imports are in the order of this work. The interpreter's lock is held by them
+for a third of a picture's time, so that what can do without it, which is the
+decoding of images, begins before all that can wait is imported.
 """
 
 import math
@@ -127,19 +128,10 @@ class RenderSession:
         Raises what :func:`moka.render` does.
         """
         _check_size(request.size)
-        # In this order: the context is made and the map is read by other
-        # threads while this one reads the model.
-        from moka.graphics.device import GraphicsDevice
-
-        with (
-            GraphicsDevice.open(request.backend, debug=debug) as device,
-            ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader,
-        ):
+        with ThreadPoolExecutor(1, thread_name_prefix="moka-read") as reader:
             environment = reader.submit(
                 _load_environment, request, statistics, cache=cache
             )
-            from moka.renderer.material_pool import MaterialPool
-
             with statistics.stage("parse"):
                 scene, model, camera = _load_scene(request)
                 still = None if moves or request.full_textures else camera
@@ -148,7 +140,14 @@ class RenderSession:
                 else:
                     width, height = request.size
                     scene.narrow(camera, width / height)
-            with closing(MaterialPool(device, statistics)) as materials:
+            # Its thread imports much; it is started when images can decode.
+            from moka.graphics.device import GraphicsDevice
+            from moka.renderer.material_pool import MaterialPool
+
+            with (
+                GraphicsDevice.open(request.backend, debug=debug) as device,
+                closing(MaterialPool(device, statistics)) as materials,
+            ):
                 materials.begin(
                     scene, still, request.size, request.settings.textures
                 )
