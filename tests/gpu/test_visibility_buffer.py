@@ -1,6 +1,7 @@
 """A visibility buffer shows what forward shading shows."""
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from moka.model import (
     quad,
     sphere,
 )
+from moka.model.assemble import model_of
 from moka.model.cameras import Orthographic, Perspective
 from moka.renderer.renderer import Renderer
 from moka.renderer.settings import RenderSettings
@@ -331,6 +333,61 @@ def test_settings_may_change_between_frames(
     renderer.close()
     np.testing.assert_array_equal(again, first)
     assert np.abs(first.astype(int) - forward).mean() < 0.5
+
+
+def test_scenes_may_change_between_frames(device: GraphicsDevice) -> None:
+    """Numbers, instances and shaders, for a renderer and one beside it."""
+    material = Material(roughness_factor=0.4, metallic_factor=0.3)
+    square = quad(0.3)
+    scene = lit([(square, material, np.eye(4))])
+    camera = looking((0, 0, -1), 0.9, (0, 0, 4))
+    settings = RenderSettings(shading="visibility", float_output=True)
+    renderer = Renderer(device, SIZE, settings)
+    beside = Renderer(device, SIZE, settings, beside=renderer)
+
+    def edit() -> None:
+        scene.edit_material(material, base_colour_factor=(0.1, 0.8, 0.2, 1.0))
+
+    def add(count: int) -> None:
+        places = [placed_at(*xy, 0) for xy in np.ndindex(count, count)]
+        scene.add(model_of([(square, material, each) for each in places]))
+
+    def remove() -> None:
+        scene.remove(scene.models[2])
+
+    def hide() -> None:
+        scene.models[0].visible = False
+
+    pictures = []
+    for change in (
+        lambda: None,
+        edit,
+        lambda: add(2),
+        lambda: add(4),
+        remove,
+        hide,
+        renderer.reload_shaders,
+    ):
+        change()
+        drawn = []
+        # Frames in flight use what those after them let go.
+        for each in (renderer, beside, renderer):
+            commands = CommandList()
+            each.draw(scene, camera, commands)
+            drawn.append(each.read_radiance(commands))
+            device.submit(commands)
+        device.finish()
+        assert renderer._targets.visibility is not None
+        expected = draw_radiance(
+            device, scene, camera, SIZE, samples=4, shading="visibility"
+        )
+        for read in drawn:
+            assert read.data is not None
+            np.testing.assert_array_equal(read.data[::-1], expected)
+        pictures.append(expected)
+    for before, after in pairwise(pictures[:-1]):
+        assert (before != after).any()
+    renderer.close()
 
 
 def test_nothing_in_view_is_the_sky(device: GraphicsDevice) -> None:
