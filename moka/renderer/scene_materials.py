@@ -16,10 +16,9 @@ from moka.material.description import (
     Feature,
     MaterialDescription,
     describe_material,
-    moves,
-    texture_slots,
 )
 from moka.material.material import AlphaMode, Material, Texture
+from moka.material.sampled_textures import moves, texture_slots
 from moka.model.mesh import Primitive
 from moka.renderer.sampled_levels import SampledLevels, StillPicture
 from moka.renderer.texture_request import (

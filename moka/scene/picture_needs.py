@@ -10,11 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from moka.material.description import (
-    Feature,
-    describe_material,
-    texture_slots,
-)
+from moka.material.description import Feature, describe_material
+from moka.material.sampled_textures import texture_slots
 from moka.model.mesh import Primitive
 from moka.model.model import Model
 from moka.scene.camera_choice import choose_camera, parse_camera
