@@ -1,7 +1,8 @@
 """The order of a frame: a scene becomes passes, packets and pixels.
 
     scene pass    opaque, then masked, then blended back to front; linear,
-                  multisampled
+                  multisampled. Or what each sample sees is noted, and each
+                  pixel shaded once (:mod:`moka.renderer.visibility_buffer`)
     accumulation  of reference lighting, whose frames have the environment
                   behind them: frames so far, averaged
     display pass  samples averaged, the environment behind them; exposed,

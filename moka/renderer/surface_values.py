@@ -55,8 +55,8 @@ GROUPS: Mapping[str, Mapping[str, slice]] = {
         "object-id": slice(3, 4),
     },
     "fresnel": {"fresnel": slice(0, 3)},
-    # How many surfaces are shaded for a pixel: no value of one of them, and
-    # so not to be asked for together with others.
+    # How many surfaces forward shading shades for a pixel: no value of one of
+    # them, and so not to be asked for together with others.
     "overdraw": {"overdraw": slice(0, 1)},
     "tangent_level": {"tangent": slice(0, 3), "mip-level": slice(3, 4)},
 }
