@@ -5,7 +5,6 @@ GLFW: waiting for events, the clipboard, the content scale and gamepads.
 """
 
 import threading
-import warnings
 from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -61,12 +60,9 @@ class Window:
 
         release_thread()
         try:
-            with warnings.catch_warnings():
-                # moderngl-window imports PyGLM by a name that is to go.
-                warnings.simplefilter("ignore", PendingDeprecationWarning)
-                import glfw
+            import glfw
 
-                from moka.app.window_glfw import GlfwWindow, start_glfw
+            from moka.app.window_glfw import GlfwWindow, start_glfw
         except ImportError as error:
             raise ContextError(
                 "a window needs moderngl-window and GLFW: "

@@ -4,14 +4,19 @@ Imported where a window is opened, and nowhere else.
 """
 
 import sys
+import warnings
 from collections.abc import Callable
 from typing import Any
 
 import glfw
-from moderngl_window.context.base import BaseWindow
-from moderngl_window.context.glfw.window import Window
 
 from moka.core.errors import ContextError
+
+with warnings.catch_warnings():
+    # moderngl-window imports PyGLM by a name that is to go.
+    warnings.simplefilter("ignore", PendingDeprecationWarning)
+    from moderngl_window.context.base import BaseWindow
+    from moderngl_window.context.glfw.window import Window
 
 __all__ = ["GlfwWindow", "start_glfw"]
 
