@@ -11,6 +11,7 @@ from moka.commands.command_buffer import CommandBuffer
 from moka.commands.command_list import CommandList
 from moka.commands.handles import Handle
 from moka.commands.sort_key import SortKey
+from moka.core.maths import Array
 from moka.graphics.device import GraphicsDevice
 from moka.renderer.frame_block import frame_values
 from moka.renderer.frame_order import LAYER_BACKGROUND, PASS_SCENE
@@ -23,6 +24,9 @@ from moka.renderer.scene_preparation import ScenePreparation
 from moka.renderer.settings import RenderSettings
 
 __all__ = ["ScenePass"]
+
+# x, y, width, height in pixels from the lower left.
+Rectangle = tuple[int, int, int, int]
 
 
 class ScenePass:
@@ -48,6 +52,9 @@ class ScenePass:
         self._preparation = preparation
         self._targets = targets
         self._progressive = progressive
+        # What the world box was computed of.
+        self._box_of: tuple[object, ...] = ()
+        self._box: Array | None = None
 
     def draw(
         self,
@@ -55,7 +62,7 @@ class ScenePass:
         settings: RenderSettings,
         size: tuple[int, int],
         lights: NDArray[np.void],
-        area: tuple[int, int, int, int] | None,
+        area: Rectangle | None,
         commands: CommandList,
     ) -> None:
         """Draw what is ``seen`` and prepared into the current targets.
@@ -101,7 +108,27 @@ class ScenePass:
                 instances,
                 clear,
                 area,
+                self._reach(seen, size, area),
             )
+
+    def _reach(
+        self, seen: FrameScene, size: tuple[int, int], area: Rectangle | None
+    ) -> Rectangle | None:
+        """The part of ``area`` that surfaces can touch, None for all of it."""
+        scene = seen.scene
+        key = (
+            scene.drawables,
+            scene.transforms.version,
+            scene.pose_version,
+            scene.visibility_version,
+        )
+        if self._box_of != key:
+            self._box_of = key
+            self._box = scene.bounds()
+        if self._box is None:
+            return area
+        reach = seen.view.rectangle_of(self._box, size)
+        return area if reach is None else _common(reach, area)
 
     def _fill_blocks(
         self,
@@ -138,3 +165,13 @@ class ScenePass:
             setup.fill_buffer(
                 self._sources.buffer(capacity), lights.view(np.uint8)
             )
+
+
+def _common(first: Rectangle, second: Rectangle | None) -> Rectangle:
+    """What two rectangles have in common; nothing has no width or height."""
+    if second is None:
+        return first
+    left, bottom = max(first[0], second[0]), max(first[1], second[1])
+    right = min(first[0] + first[2], second[0] + second[2])
+    top = min(first[1] + first[3], second[1] + second[3])
+    return left, bottom, max(0, right - left), max(0, top - bottom)

@@ -68,6 +68,32 @@ class View(Struct, frozen=True):
             clip_from_world=shift @ self.clip_from_world,
         )
 
+    def rectangle_of(
+        self, box: Array, size: tuple[int, int]
+    ) -> tuple[int, int, int, int] | None:
+        """The pixels that a world ``box`` (2, 3) can touch, with one around.
+
+        As x, y, width and height from the lower left of a picture of
+        ``size``; None where it reaches behind the camera, or beyond what can
+        be computed, and may be anywhere.
+        """
+        corners = np.ones((8, 4))
+        # Every choice of a lower or an upper end on the three axes.
+        ends = np.arange(8)[:, np.newaxis] >> np.arange(3) & 1
+        with np.errstate(over="ignore", invalid="ignore"):
+            corners[:, :3] = box[ends, np.arange(3)] - self.position
+            x, y, _, w = self.clip_from_world @ corners.T
+            if not (w > 1e-6 * np.abs(corners[:, :3]).max()).all():
+                return None
+            places = (np.stack([x, y]) / w * 0.5 + 0.5).T * size
+        if not np.isfinite(places).all():
+            return None
+        low = np.clip(np.floor(places.min(axis=0)) - 1, 0, size)
+        high = np.clip(np.ceil(places.max(axis=0)) + 1, 0, size)
+        left, bottom = low.astype(int).tolist()
+        width, height = (high - low).astype(int).tolist()
+        return left, bottom, width, height
+
     def direction_from_clip(self, environment_rotation: float) -> Array:
         """(4, 4): clip (x, y, 0, 1) to a direction of the environment.
 

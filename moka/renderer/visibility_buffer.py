@@ -127,8 +127,13 @@ class VisibilityBuffer:
         instances: Instances,
         clear: tuple[float, float, float, float],
         area: tuple[int, int, int, int] | None,
+        within: tuple[int, int, int, int] | None,
     ) -> None:
-        """Shade what is seen of the ``instances`` that have been drawn."""
+        """Shade what is seen of the ``instances`` that have been drawn.
+
+        In ``area`` the target is cleared; they touch nothing but pixels
+        ``within``.
+        """
         if not len(instances):
             texels = np.zeros((1, 4), np.uint32)
         else:
@@ -141,6 +146,7 @@ class VisibilityBuffer:
             buffer.bind_framebuffer(self._mask)
             buffer.scissor(area)
             buffer.clear(None, 0.0)
+            buffer.scissor(within)
             buffer.draw(
                 self._passes.program(
                     "visible_pixels.frag",
@@ -154,6 +160,7 @@ class VisibilityBuffer:
         buffer.bind_framebuffer(self._shaded)
         buffer.scissor(area)
         buffer.clear(clear)
+        buffer.scissor(within)
         buffer.draw(
             prepared.visible_surface.program,
             self._passes.triangle,
