@@ -20,10 +20,10 @@ __all__ = ["Targets"]
 class Targets:
     """The framebuffers of one size (width, height) and sample count.
 
-    ``scene`` is drawn into and ``scene_texture`` what it holds, ``display``
-    gets tone mapped bytes. Half floats hold radiance up to 65 504, which the
-    display never needs; with ``float_output`` it is float32, for pictures
-    whose values leave as numbers.
+    ``scene`` is drawn into, ``scene_texture`` and ``depth_texture`` are what
+    it holds, ``display`` gets tone mapped bytes. Half floats hold radiance up
+    to 65 504, which the display never needs; with ``float_output`` it is
+    float32, for pictures whose values leave as numbers.
     """
 
     def __init__(
@@ -42,9 +42,8 @@ class Targets:
             PixelFormat.RGBA32F if float_output else PixelFormat.RGBA16F
         )
         self.scene_texture = self._texture(self._format, samples)
-        self.scene = self._framebuffer(
-            self.scene_texture, self._texture(PixelFormat.DEPTH32F, samples)
-        )
+        self.depth_texture = self._texture(PixelFormat.DEPTH32F, samples)
+        self.scene = self._framebuffer(self.scene_texture, self.depth_texture)
         self.display = self._framebuffer(self._texture(PixelFormat.RGBA8))
 
     @property

@@ -82,19 +82,20 @@ class VisibilityBuffer:
         self._resources: list[Handle] = []
         size = targets.size
         self._triangles = self._texture(PixelFormat.R32UI, size, samples)
-        depth = self._texture(PixelFormat.DEPTH32F, size, samples)
-        self._seen = self._framebuffer((self._triangles,), depth)
-        # Which pixels have anything in them: one depth for each.
+        # The targets have one depth for each pixel: that of its one sample,
+        # or, of several, a mark where any of them has something.
+        depth = targets.depth_texture
         self._mask: Handle | None = None
         if samples > 1:
-            depth = self._texture(PixelFormat.DEPTH32F, size, 1)
             self._mask = self._framebuffer((), depth)
             self._mask_group = self._keep(
                 device.create_bind_group(
                     BindGroupDescriptor((self._triangle_binding,))
                 )
             )
-        self._shaded = self._framebuffer((targets.scene_texture,), depth)
+            depth = self._texture(PixelFormat.DEPTH32F, size, samples)
+        self._seen = self._framebuffer((self._triangles,), depth)
+        self._shaded = targets.scene
         self._instances: Handle | None = None
         self._instance_capacity = 0
         self._group: Handle | None = None
