@@ -1,5 +1,6 @@
 """What the viewer reads back from the GPU: pictures and what was clicked."""
 
+from collections import deque
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -24,22 +25,28 @@ class Readbacks:
     def __init__(self, viewer: "Viewer") -> None:
         self._viewer = viewer
         self._reads: list[tuple[list[Readback], Callable[[], None]]] = []
-        self._wants_picture: Path | None = None
+        self._asked: deque[Path] = deque()
+        self._saves: Path | None = None
         self._wants_pick: tuple[tuple[float, float], bool] | None = None
 
     @property
     def are_pending(self) -> bool:
-        """Whether anything has not arrived."""
-        return bool(self._reads)
+        """Whether anything has not arrived, or waits for another frame."""
+        return bool(self._reads or self._asked)
 
     @property
-    def wants_picture(self) -> bool:
-        """Whether the next whole picture is to be saved."""
-        return self._wants_picture is not None
+    def saves_picture(self) -> bool:
+        """Whether this frame's picture is to be saved, if it is whole."""
+        return self._saves is not None
 
     def save_picture(self, path: Path) -> None:
-        """Save the next whole picture."""
-        self._wants_picture = path
+        """Save the next whole picture. May be called on any thread."""
+        self._asked.append(path)
+
+    def begin_frame(self) -> None:
+        """Decide what this frame saves; what is asked later waits."""
+        if self._saves is None and self._asked:
+            self._saves = self._asked.popleft()
 
     def pick(self, place: tuple[float, float], *, is_double: bool) -> None:
         """Select what is at a place of the window; twice, go around it."""
@@ -53,14 +60,14 @@ class Readbacks:
 
     def _read_picture(self, commands: CommandList) -> None:
         viewer = self._viewer
-        path, self._wants_picture = self._wants_picture, None
+        path = self._saves
         if path is None:
             return
         is_whole = viewer.renderer.is_complete and not viewer.draft.is_now
         if viewer.debug_view is not None or not is_whole:
             # A picture is one of light, and of all of it.
-            self._wants_picture = path
             return
+        self._saves = None
         read = viewer.renderer.read_radiance(commands)
         settings = viewer.settings
 

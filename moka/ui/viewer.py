@@ -174,6 +174,7 @@ class Viewer(App):
         self.times.add("wait", self.waited)
         self.draft.note_wait(self.waited)
         places = self.times.begin_frame()
+        self.readbacks.begin_frame()
         self.times.add("update", self._updating)
         with self.times.stage("scene"):
             if places:
@@ -235,7 +236,7 @@ class Viewer(App):
                 self.comparison.draw(
                     self.renderer, self.scene, self.camera, times
                 )
-                if self.readbacks.wants_picture:
+                if self.readbacks.saves_picture:
                     # All of it, over the other one for a moment.
                     self.renderer.area = None
             self._draw_scene(commands)

@@ -20,6 +20,7 @@ from moka.app.events import DropEvent
 from moka.app.keys import MouseButton
 from moka.app.render_request import RenderRequest
 from moka.cli.main import main
+from moka.commands.command_list import CommandList
 from moka.core import resources
 from moka.core.decode import decode_image
 from moka.core.encoded_image import EncodedImage
@@ -572,6 +573,35 @@ def test_a_picture_is_saved_whole_where_another_one_stands_beside_it(
     watch(story)
     alone, beside = (np.asarray(PillowImage.open(path)) for path in saved)
     np.testing.assert_array_equal(alone, beside)
+
+
+def test_what_is_asked_while_a_frame_is_drawn_is_saved_of_the_next(
+    watch: Watch, tmp_path: Path
+) -> None:
+    """As from another thread, in the middle of half a picture."""
+    saved = tmp_path / "asked.png"
+
+    def story(person: Person, viewer: Viewer) -> None:
+        viewer.comparison.choice = "BRDF blinn-phong"
+        viewer.request_redraw()
+        person.wait("half", lambda: viewer.renderer.area is not None)
+        record = viewer.readbacks.record
+
+        def ask_first(commands: CommandList) -> None:
+            viewer.readbacks.record = record  # type: ignore[method-assign]
+            viewer.save_picture(saved)
+            record(commands)
+
+        viewer.readbacks.record = ask_first  # type: ignore[method-assign]
+        viewer.request_redraw()
+        person.wait("a file", saved.exists)
+
+    watch(story)
+    picture = np.asarray(PillowImage.open(saved))
+    # The cube stands in the middle; the other picture shows none of it red.
+    found = is_red(picture).any(axis=0)
+    left, right = np.array_split(found, 2)
+    assert left.sum() > 0.7 * right.sum() > 0.4 * left.sum() > 0
 
 
 def test_numbers_that_mean_nothing_are_told(watch: Watch) -> None:
