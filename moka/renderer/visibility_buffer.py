@@ -135,13 +135,15 @@ class VisibilityBuffer:
         In ``area`` the target is cleared; they touch nothing but pixels
         ``within``.
         """
+        buffer = commands.command_buffer(key)
         if not len(instances):
-            texels = np.zeros((1, 4), np.uint32)
-        else:
-            texels = instances.view(np.uint32).reshape(-1, 4)
+            buffer.bind_framebuffer(self._shaded)
+            buffer.scissor(area)
+            buffer.clear(clear)
+            return
+        texels = instances.view(np.uint32).reshape(-1, 4)
         group = self._bind_group(prepared, len(texels))
         assert self._instances is not None
-        buffer = commands.command_buffer(key)
         buffer.fill_texture(self._instances, texels)
         if self._mask is not None:
             buffer.bind_framebuffer(self._mask)

@@ -446,13 +446,18 @@ def test_crowded_triangles_of_any_size_are_finite(
     assert off.mean() < 0.05 * forward.mean()
 
 
-def draws(device: GraphicsDevice, scene: Scene, **settings: Any) -> int:
+def draws(
+    device: GraphicsDevice,
+    scene: Scene,
+    towards: tuple[float, float, float] = (0, 0, -1),
+    **settings: Any,
+) -> int:
     """How many draws a frame has."""
     renderer = Renderer(
         device, SIZE, RenderSettings(**settings), statistics=Statistics()
     )
     commands = CommandList()
-    renderer.draw(scene, looking((0, 0, -1), 0.9, (0, 0, 3)), commands)
+    renderer.draw(scene, looking(towards, 0.9, (0, 0, 3)), commands)
     counted = device.submit(commands).wait().gl_draws
     renderer.close()
     return counted
@@ -464,6 +469,8 @@ def test_draws_are_what_it_is_for(device: GraphicsDevice) -> None:
     # What is seen, which pixels that are, their shading, and the display.
     assert draws(device, scene, shading="visibility", samples=4) == 4
     assert draws(device, scene, shading="visibility", samples=1) == 3
+    # Nothing is looked for where nothing has been drawn.
+    assert draws(device, scene, (0, 0, 1), shading="visibility") == 1
 
 
 def refused() -> dict[str, Items]:
