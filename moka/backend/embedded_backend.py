@@ -1,14 +1,13 @@
 """The backend in a context of another program."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from moka.backend.contexts.embedded import EmbeddedContext
 from moka.backend.gl_functions import Functions
+from moka.backend.gl_programs import Explain
 from moka.backend.host_state import HostState
 from moka.backend.moderngl_backend import ModernGLBackend
-from moka.commands.descriptors import ProgramDescriptor, ShaderText
-from moka.commands.handles import Handle
 
 __all__ = ["EmbeddedBackend"]
 
@@ -23,10 +22,8 @@ class EmbeddedBackend(ModernGLBackend):
     def __init__(
         self,
         context: EmbeddedContext,
-        explain: Callable[[str, ShaderText], str],
+        explain: Explain,
     ) -> None:
-        # As many texture units as the program that reads most of them.
-        self._units = 0
         self._host = HostState(Functions(context.function), context.gl)
         collects = context.gl.gc_mode
         try:
@@ -40,16 +37,11 @@ class EmbeddedBackend(ModernGLBackend):
     def visit(self) -> Iterator[None]:
         """See :class:`moka.graphics.calling_thread.GuestBackend`."""
         with self._host.kept(
-            blocks=len(self._blocks), units=self._units
+            blocks=len(self._points), units=self._points.units
         ) as framebuffer:
             self._state.forget()
             self._runner.window = framebuffer
             self._set_defaults()
             yield
-
-    def create_program(
-        self, handle: Handle, descriptor: ProgramDescriptor
-    ) -> None:
-        """See :class:`moka.backend.protocol.Backend`."""
-        super().create_program(handle, descriptor)
-        self._units = max(self._units, len(self._get(handle).samplers))
+            # What a host has asked for is done when its call returns.
+            self.finish_programs()

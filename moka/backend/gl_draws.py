@@ -6,24 +6,23 @@ attributes pointed at its rows.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from moka.backend import gl_constants as c
 from moka.backend.batching import INDIRECT, Batches, MeshTable, merge_draws
+from moka.backend.gl_bindings import Bindings, match_bindings
 from moka.backend.gl_functions import Functions
-from moka.backend.gl_programs import (
-    Bindings,
-    GlProgram,
+from moka.backend.gl_programs import GlProgram
+from moka.backend.gl_state import StateCache
+from moka.backend.gl_textures import SamplerCache
+from moka.backend.gl_vertex_arrays import (
     VertexSource,
     bind_instances,
     make_vertex_array,
-    match_bindings,
 )
-from moka.backend.gl_state import StateCache
-from moka.backend.gl_textures import SamplerCache
 from moka.backend.protocol import FrameCounters
 from moka.commands.descriptors import MeshDescriptor
 from moka.commands.draws import INSTANCE
@@ -31,6 +30,8 @@ from moka.commands.handles import Handle, ResourceKind
 from moka.commands.recording import Recording
 
 __all__ = ["DrawRunner"]
+
+_T = TypeVar("_T")
 
 
 class DrawRunner:
@@ -51,7 +52,6 @@ class DrawRunner:
         *,
         multi_draw: bool,
     ) -> None:
-        self._ctx = context
         self._gl = gl
         self._state = state
         self._samplers = samplers
@@ -61,7 +61,7 @@ class DrawRunner:
         self._sources: list[VertexSource] = []
         self._source_numbers: dict[VertexSource, int] = {}
         self._bindings: dict[tuple[int, int], Bindings] = {}
-        self._arrays: dict[tuple[int, int], Any] = {}
+        self._arrays: dict[tuple[int, int], int] = {}
         self._instances = context.buffer(
             reserve=INSTANCE.itemsize, dynamic=True
         )
@@ -91,10 +91,10 @@ class DrawRunner:
     def forget(self, handle: Handle) -> None:
         """Drop what is kept of a resource that goes."""
         if handle.kind is ResourceKind.PROGRAM:
-            self._drop(self._bindings, 0, handle.index)
-            self._drop(self._arrays, 0, handle.index)
+            _drop(self._bindings, 0, handle.index)
+            self._drop_arrays(0, handle.index)
         elif handle.kind is ResourceKind.BIND_GROUP:
-            self._drop(self._bindings, 1, handle.index)
+            _drop(self._bindings, 1, handle.index)
         elif handle.kind is ResourceKind.BUFFER:
             self._drop_sources(handle)
 
@@ -123,16 +123,11 @@ class DrawRunner:
         array = self._arrays.get((slot, number))
         if array is None:
             array = self._arrays[slot, number] = make_vertex_array(
-                self._ctx,
-                self._gl,
-                program,
-                source,
-                self._get,
-                self._instances,
+                self._gl, program, source, self._get, self._instances
             )
             state.forget("vertex_array")
         state.program(program.name)
-        state.vertex_array(array.glo)
+        state.vertex_array(array)
         state.raster(recording.states[batches.state[batch]])
         self._bind(slot, program, batches.bind_group[batch])
         first, last = batches.start[batch], batches.start[batch + 1]
@@ -141,13 +136,13 @@ class DrawRunner:
             counters.gl_draws += 1
             return
         for command in batches.commands[first:last]:
-            self._single_draw(array, program, source, command)
+            self._single_draw(program, source, command)
             counters.gl_draws += 1
 
     def release(self) -> None:
         """Delete the GL objects."""
         for array in self._arrays.values():
-            array.release()
+            self._gl.delete("VertexArrays", array)
         self._arrays.clear()
         self._instances.release()
         self._commands.release()
@@ -155,12 +150,9 @@ class DrawRunner:
     def _get(self, handle: Handle) -> Any:
         return self._resources[handle.kind, handle.index]
 
-    @staticmethod
-    def _drop(cache: dict[tuple[int, int], Any], part: int, slot: int) -> None:
-        for key in [key for key in cache if key[part] == slot]:
-            entry = cache.pop(key)
-            if hasattr(entry, "release"):
-                entry.release()
+    def _drop_arrays(self, part: int, slot: int) -> None:
+        for array in _drop(self._arrays, part, slot):
+            self._gl.delete("VertexArrays", array)
 
     def _drop_sources(self, buffer: Handle) -> None:
         for source in [
@@ -170,7 +162,7 @@ class DrawRunner:
         ]:
             # Numbers are never given out again, so that a mesh that still
             # names one cannot draw from another buffer.
-            self._drop(self._arrays, 1, self._source_numbers.pop(source))
+            self._drop_arrays(1, self._source_numbers.pop(source))
 
     @staticmethod
     def _upload(
@@ -216,7 +208,7 @@ class DrawRunner:
             )
 
     def _single_draw(
-        self, array: Any, program: GlProgram, source: VertexSource, command: Any
+        self, program: GlProgram, source: VertexSource, command: Any
     ) -> None:
         mode = c.TOPOLOGY[source.topology]
         if source.index_buffer is None:
@@ -224,8 +216,7 @@ class DrawRunner:
             first_instance = int(command["base_vertex"])
         else:
             first_instance = int(command["base_instance"])
-        bind_instances(array, program, self._instances, first_instance)
-        # Binding attributes binds the vertex array, as a side effect.
+        bind_instances(self._gl, program, self._instances, first_instance)
         count, instances = int(command["count"]), command["instance_count"]
         if source.index_buffer is None:
             self._gl.DrawArraysInstanced(
@@ -241,3 +232,8 @@ class DrawRunner:
                 int(instances),
                 int(command["base_vertex"]),
             )
+
+
+def _drop(cache: dict[tuple[int, int], _T], part: int, slot: int) -> list[_T]:
+    """Take out what is kept of a slot; ``part`` says which of a key's it is."""
+    return [cache.pop(key) for key in list(cache) if key[part] == slot]

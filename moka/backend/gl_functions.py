@@ -1,11 +1,11 @@
 """The GL entry points that ModernGL has no words for, through ctypes.
 
-ModernGL makes the context, the programs, the buffers and the vertex arrays.
-It cannot attach a cube face or a mip level to a framebuffer, give a texture
-its levels one by one, mirror a wrap or draw with a base instance, and it
-holds Python's lock in every call. A call through ``ctypes.CFUNCTYPE``
-releases the lock, so that decoding threads run on while the driver copies a
-texture or compiles at the first draw. All such calls stand here.
+ModernGL makes the context and the buffers. It cannot attach a cube face or a
+mip level to a framebuffer, give a texture its levels one by one, mirror a
+wrap, draw with a base instance or begin to link a program without waiting for
+it, and it holds Python's lock in every call. A call through
+``ctypes.CFUNCTYPE`` releases the lock, so that decoding threads run on while
+the driver copies a texture or compiles. All such calls stand here.
 """
 
 from collections.abc import Callable
@@ -19,6 +19,7 @@ from ctypes import (
     c_uint,
     c_uint64,
     c_void_p,
+    create_string_buffer,
 )
 from typing import Any
 
@@ -37,6 +38,7 @@ _BOOL = c_ubyte
 # Name without its gl prefix: result type, argument types.
 _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "ActiveTexture": (None, _UINT),
+    "AttachShader": (None, _UINT, _UINT),
     "BindBuffer": (None, _UINT, _UINT),
     "BindBufferBase": (None, _UINT, _UINT, _UINT),
     "BindBufferRange": (None, _UINT, _UINT, _UINT, _SIZE, _SIZE),
@@ -59,6 +61,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "ClientWaitSync": (_UINT, _POINTER, _UINT, c_uint64),
     "ColorMask": (None, _BOOL, _BOOL, _BOOL, _BOOL),
     "ColorMaski": (None, _UINT, _BOOL, _BOOL, _BOOL, _BOOL),
+    "CompileShader": (None, _UINT),
     "CompressedTexImage2D": (
         None,
         _UINT,
@@ -70,16 +73,22 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
         _INT,
         _POINTER,
     ),
+    "CreateProgram": (_UINT,),
+    "CreateShader": (_UINT, _UINT),
     "CullFace": (None, _UINT),
     "DeleteBuffers": (None, _INT, _POINTER),
     "DeleteFramebuffers": (None, _INT, _POINTER),
+    "DeleteProgram": (None, _UINT),
     "DeleteQueries": (None, _INT, _POINTER),
     "DeleteSamplers": (None, _INT, _POINTER),
-    "DeleteTextures": (None, _INT, _POINTER),
+    "DeleteShader": (None, _UINT),
     "DeleteSync": (None, _POINTER),
+    "DeleteTextures": (None, _INT, _POINTER),
+    "DeleteVertexArrays": (None, _INT, _POINTER),
     "DepthFunc": (None, _UINT),
     "DepthMask": (None, _BOOL),
     "DepthRange": (None, _DOUBLE, _DOUBLE),
+    "DetachShader": (None, _UINT, _UINT),
     "Disable": (None, _UINT),
     "Disablei": (None, _UINT, _UINT),
     "DrawArraysInstanced": (None, _UINT, _INT, _INT, _INT),
@@ -105,18 +114,38 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "GenQueries": (None, _INT, _POINTER),
     "GenSamplers": (None, _INT, _POINTER),
     "GenTextures": (None, _INT, _POINTER),
+    "GenVertexArrays": (None, _INT, _POINTER),
     "GenerateMipmap": (None, _UINT),
+    "GetActiveAttrib": (None, _UINT, _UINT, _INT, *[_POINTER] * 4),
+    "GetActiveUniformBlockName": (
+        None,
+        _UINT,
+        _UINT,
+        _INT,
+        _POINTER,
+        _POINTER,
+    ),
+    "GetActiveUniformBlockiv": (None, _UINT, _UINT, _UINT, _POINTER),
+    "GetActiveUniformName": (None, _UINT, _UINT, _INT, _POINTER, _POINTER),
+    "GetActiveUniformsiv": (None, _UINT, _INT, _POINTER, _UINT, _POINTER),
+    "GetAttribLocation": (_INT, _UINT, _POINTER),
     "GetBooleani_v": (None, _UINT, _UINT, _POINTER),
     "GetBufferSubData": (None, _UINT, _SIZE, _SIZE, _POINTER),
     "GetDoublev": (None, _UINT, _POINTER),
     "GetInteger64i_v": (None, _UINT, _UINT, _POINTER),
     "GetIntegeri_v": (None, _UINT, _UINT, _POINTER),
     "GetIntegerv": (None, _UINT, _POINTER),
+    "GetProgramInfoLog": (None, _UINT, _INT, _POINTER, _POINTER),
+    "GetProgramiv": (None, _UINT, _UINT, _POINTER),
     "GetQueryObjectiv": (None, _UINT, _UINT, _POINTER),
     "GetQueryObjectui64v": (None, _UINT, _UINT, _POINTER),
+    "GetShaderInfoLog": (None, _UINT, _INT, _POINTER, _POINTER),
+    "GetShaderiv": (None, _UINT, _UINT, _POINTER),
     "GetTexImage": (None, _UINT, _INT, _UINT, _UINT, _POINTER),
+    "GetUniformLocation": (_INT, _UINT, _POINTER),
     "IsEnabled": (_BOOL, _UINT),
     "IsEnabledi": (_BOOL, _UINT, _UINT),
+    "LinkProgram": (None, _UINT),
     "MultiDrawArraysIndirect": (None, _UINT, _POINTER, _INT, _INT),
     "MultiDrawElementsIndirect": (
         None,
@@ -134,6 +163,7 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     "SamplerParameterf": (None, _UINT, _UINT, _FLOAT),
     "SamplerParameteri": (None, _UINT, _UINT, _INT),
     "Scissor": (None, _INT, _INT, _INT, _INT),
+    "ShaderSource": (None, _UINT, _INT, _POINTER, _POINTER),
     "TexBuffer": (None, _UINT, _UINT, _UINT),
     "TexImage2D": (
         None,
@@ -158,7 +188,10 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
     ),
     "TexParameteri": (None, _UINT, _UINT, _INT),
     "Uniform1i": (None, _INT, _INT),
+    "UniformBlockBinding": (None, _UINT, _UINT, _UINT),
     "UseProgram": (None, _UINT),
+    "VertexAttribDivisor": (None, _UINT, _UINT),
+    "VertexAttribIPointer": (None, _UINT, _INT, _UINT, _INT, _POINTER),
     "VertexAttribPointer": (
         None,
         _UINT,
@@ -195,6 +228,19 @@ class Functions:
         name = c_uint()
         getattr(self, "Gen" + kind)(1, addressof(name))
         return name.value
+
+    def parameter(self, kind: str, name: int, what: int) -> int:
+        """What a ``Program`` or ``Shader`` is; waits until it is known."""
+        value = c_int()
+        getattr(self, f"Get{kind}iv")(name, what, addressof(value))
+        return value.value
+
+    def log(self, kind: str, name: int) -> str:
+        """What the driver has to say of a ``Program`` or ``Shader``."""
+        size = self.parameter(kind, name, c.INFO_LOG_LENGTH) + 1
+        text = create_string_buffer(size)
+        getattr(self, f"Get{kind}InfoLog")(name, size, None, addressof(text))
+        return text.value.decode("utf-8", "replace")
 
     def is_available(self, query: int) -> bool:
         """Whether the result of a query can be had without waiting."""

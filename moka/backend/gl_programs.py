@@ -1,55 +1,47 @@
-"""Programs, bind groups and vertex sources, and how they fit together.
+"""Programs: compiled and linked side by side, then asked what they read.
 
-A program names its textures, blocks and attributes; bind groups and vertex
-layouts answer by name. Each pair is matched once, when it first meets.
+A driver with threads of its own compiles on them until somebody asks how a
+shader or a program has come out; whoever asks waits. So all that are needed
+are begun first (:class:`GlProgram`), and asked only when one is to be drawn
+with (:meth:`GlProgram.finish`). Drivers say that they work like this by
+KHR_parallel_shader_compile or ARB_parallel_shader_compile; nothing of either
+is called, as a context begins with as many threads as the driver has to give.
+On others the order does no harm.
 """
 
-from collections.abc import Callable
-from typing import Any
-
-from msgspec import Struct
+from collections.abc import Callable, Iterator
+from ctypes import addressof, c_char_p, c_int, c_uint, create_string_buffer
+from typing import Any, Protocol
 
 from moka.backend import gl_constants as c
 from moka.backend.gl_functions import Functions
-from moka.backend.gl_textures import GlTexture, SamplerCache
-from moka.commands.descriptors import (
-    BindGroupDescriptor,
-    IndexType,
-    ProgramDescriptor,
-    Topology,
-    VertexLayout,
-)
-from moka.commands.draws import INSTANCE
-from moka.commands.handles import Handle
-from moka.core.errors import DeviceError, ShaderError
+from moka.commands.descriptors import ProgramDescriptor, ShaderText
+from moka.core.errors import ShaderError
 
-__all__ = [
-    "Bindings",
-    "BlockRegistry",
-    "GlProgram",
-    "VertexSource",
-    "make_vertex_array",
-    "match_bindings",
-]
-
-# How the vertex shader reads a row of moka.commands.draws.INSTANCE.
-INSTANCE_ATTRIBUTES = (
-    ("instance_row_0", "f", "4f", 0),
-    ("instance_row_1", "f", "4f", 16),
-    ("instance_row_2", "f", "4f", 32),
-    ("instance_data", "i", "4u", 48),
-)
+__all__ = ["BindingPoints", "Explain", "GlProgram"]
 
 
-class BlockRegistry:
+class Explain(Protocol):
+    """Turns a driver's log into one line that names file and line.
+
+    ``texts`` are what it is about: the shader that does not compile, or the
+    vertex and the fragment shader that do not link.
+    """
+
+    def __call__(self, log: str, *texts: ShaderText) -> str: ...
+
+
+class BindingPoints:
     """Gives every uniform block name one binding point for all programs.
 
     So that a block which many programs share (the frame's) stays bound when
-    the program changes.
+    the program changes. Texture units each program counts for itself;
+    ``units`` are those of the one that reads most.
     """
 
     def __init__(self) -> None:
         self._points: dict[str, int] = {}
+        self.units = 0
 
     def __len__(self) -> int:
         """How many points have been given out, from 0."""
@@ -61,178 +53,165 @@ class BlockRegistry:
 
 
 class GlProgram:
-    """A linked program and what it reads, by name."""
+    """A vertex and a fragment shader, and what they read, by name.
 
-    def __init__(
-        self,
-        context: Any,
-        gl: Functions,
-        descriptor: ProgramDescriptor,
-        blocks: BlockRegistry,
-        explain: Callable[[str, ProgramDescriptor], str],
-    ) -> None:
-        from moderngl import Attribute, Error, Uniform, UniformBlock
+    When it is made the driver has been told all and asked nothing.
+    ``samplers`` (texture units), ``blocks`` (binding points and bytes) and
+    ``attributes`` (locations) are there after :meth:`finish`.
+    """
 
+    def __init__(self, gl: Functions, descriptor: ProgramDescriptor) -> None:
         self.label = descriptor.label
-        try:
-            self.program = context.program(
-                vertex_shader=descriptor.vertex.source,
-                fragment_shader=descriptor.fragment.source,
-            )
-        except Error as error:
-            raise ShaderError(explain(str(error), descriptor)) from None
-        self.name: int = self.program.glo
         self.samplers: dict[str, int] = {}
         self.blocks: dict[str, tuple[int, int]] = {}
         self.attributes: dict[str, int] = {}
-        for name in self.program:
-            member = self.program[name]
-            if isinstance(member, Attribute):
-                self.attributes[name] = member.location
-            elif isinstance(member, UniformBlock):
-                member.binding = blocks.point(name)
-                self.blocks[name] = (member.binding, member.size)
-            elif isinstance(member, Uniform):
-                # Plain uniforms are samplers here; values live in blocks.
-                # ModernGL has no word for those of buffer textures.
-                gl.UseProgram(self.name)
-                gl.Uniform1i(member.location, len(self.samplers))
-                self.samplers[name] = len(self.samplers)
+        self._gl = gl
+        self.name: int = gl.CreateProgram()
+        self._shaders = [
+            (self._begin_shader(kind, text), text)
+            for kind, text in (
+                (c.VERTEX_SHADER, descriptor.vertex),
+                (c.FRAGMENT_SHADER, descriptor.fragment),
+            )
+        ]
+        gl.LinkProgram(self.name)
+
+    def finish(self, points: BindingPoints, explain: Explain) -> None:
+        """Wait until it is linked; find what it reads, and bind that.
+
+        It may be the current program then. Raises ShaderError.
+        """
+        gl, name = self._gl, self.name
+        # What does not compile does not link: one question is enough.
+        if not gl.parameter("Program", name, c.LINK_STATUS):
+            raise ShaderError(self._fault(explain))
+        self._release_shaders()
+        self._find_attributes()
+        self._find_samplers()
+        for block, size in self._uniform_blocks():
+            point = points.point(block)
+            gl.UniformBlockBinding(name, len(self.blocks), point)
+            self.blocks[block] = (point, size)
+        points.units = max(points.units, len(self.samplers))
 
     def release(self) -> None:
-        """Delete the GL object."""
-        self.program.release()
+        """Delete the GL objects."""
+        self._release_shaders()
+        self._gl.DeleteProgram(self.name)
 
+    def _begin_shader(self, kind: int, text: ShaderText) -> int:
+        gl = self._gl
+        shader: int = gl.CreateShader(kind)
+        source = c_char_p(text.source.encode())
+        gl.ShaderSource(shader, 1, addressof(source), None)
+        gl.CompileShader(shader)
+        gl.AttachShader(self.name, shader)
+        return shader
 
-class Bindings(Struct, frozen=True):
-    """What one bind group binds for one program.
+    def _release_shaders(self) -> None:
+        for shader, _ in self._shaders:
+            self._gl.DetachShader(self.name, shader)
+            self._gl.DeleteShader(shader)
+        self._shaders.clear()
 
-    Arguments of :meth:`StateCache.texture` and ``uniform_block``.
-    """
+    def _fault(self, explain: Explain) -> str:
+        """Why it is not linked."""
+        gl = self._gl
+        for shader, text in self._shaders:
+            if not gl.parameter("Shader", shader, c.COMPILE_STATUS):
+                return explain(gl.log("Shader", shader), text)
+        texts = (text for _, text in self._shaders)
+        return explain(gl.log("Program", self.name), *texts)
 
-    textures: tuple[tuple[int, int, int, int, tuple[int, int]], ...]
-    blocks: tuple[tuple[int, int, int, int], ...]
-
-
-def match_bindings(
-    program: GlProgram,
-    group: BindGroupDescriptor,
-    textures: Callable[[Handle], GlTexture],
-    buffers: Callable[[Handle], Any],
-    samplers: SamplerCache,
-) -> Bindings:
-    """Resolve ``group`` for ``program``; extra entries are left out.
-
-    Raises DeviceError if the program reads something that the group lacks
-    or a block is larger than its buffer range.
-    """
-    bound_textures = []
-    by_name = {binding.name: binding for binding in group.textures}
-    for name, unit in program.samplers.items():
-        if name not in by_name:
-            raise DeviceError(
-                f"program {program.label}: reads texture {name!r}, which its "
-                "bind group does not hold"
-            )
-        wanted = by_name[name]
-        texture = textures(wanted.texture)
-        last = texture.descriptor.level_count - 1
-        levels = (0, last) if wanted.level is None else (wanted.level,) * 2
-        sampler = samplers.name(wanted.sampler, levels[0] < levels[1])
-        bound_textures.append(
-            (unit, texture.target, texture.name, sampler, levels)
+    def _find_attributes(self) -> None:
+        gl, program = self._gl, self.name
+        size, kind = c_int(), c_uint()
+        names = self._names(
+            c.ACTIVE_ATTRIBUTES,
+            c.ACTIVE_ATTRIBUTE_MAX_LENGTH,
+            lambda index, length, into: gl.GetActiveAttrib(
+                program,
+                index,
+                length,
+                None,
+                addressof(size),
+                addressof(kind),
+                into,
+            ),
         )
-    bound_blocks = []
-    uniforms = {binding.name: binding for binding in group.uniforms}
-    for name, (point, size) in program.blocks.items():
-        if name not in uniforms:
-            raise DeviceError(
-                f"program {program.label}: reads block {name!r}, which its "
-                "bind group does not hold"
-            )
-        binding = uniforms[name]
-        buffer = buffers(binding.buffer)
-        available = binding.size or buffer.size - binding.offset
-        if available < size:
-            raise DeviceError(
-                f"program {program.label}: block {name!r} has {size} bytes, "
-                f"its bind group gives {available}"
-            )
-        bound_blocks.append((point, buffer.glo, binding.offset, available))
-    return Bindings(tuple(bound_textures), tuple(bound_blocks))
+        for _, name in names:
+            # What no buffer feeds, such as gl_VertexID, is none of these.
+            if not name.startswith(b"gl_"):
+                location = gl.GetAttribLocation(program, name)
+                self.attributes[name.decode()] = location
 
+    def _find_samplers(self) -> None:
+        """Uniforms outside of blocks are samplers; values live in blocks.
 
-class VertexSource(Struct, frozen=True):
-    """What must be bound to draw meshes: buffers, layout, topology."""
-
-    topology: Topology
-    layout: VertexLayout | None
-    vertex_buffer: Handle | None
-    index_buffer: Handle | None
-    index_type: IndexType
-
-
-def make_vertex_array(
-    context: Any,
-    gl: Functions,
-    program: GlProgram,
-    source: VertexSource,
-    buffers: Callable[[Handle], Any],
-    instances: Any,
-) -> Any:
-    """A vertex array that feeds ``program`` from ``source``.
-
-    Raises DeviceError if the program reads an attribute that neither the
-    layout nor the instances have.
-    """
-    index_buffer = (
-        None if source.index_buffer is None else buffers(source.index_buffer)
-    )
-    array = context.vertex_array(program.program, [], index_buffer)
-    missing = set(program.attributes)
-    if source.layout is not None and source.vertex_buffer is not None:
-        # ModernGL's own binding of attributes cannot normalise integers.
-        gl.BindVertexArray(array.glo)
-        gl.BindBuffer(c.ARRAY_BUFFER, buffers(source.vertex_buffer).glo)
-        for attribute in source.layout.attributes:
-            location = program.attributes.get(attribute.name)
-            if location is None:
-                continue
-            gl.VertexAttribPointer(
-                location,
-                attribute.components,
-                c.COMPONENT_TYPE[attribute.type],
-                attribute.normalised,
-                source.layout.stride,
-                attribute.offset,
-            )
-            gl.EnableVertexAttribArray(location)
-            missing.discard(attribute.name)
-    bind_instances(array, program, instances, 0)
-    missing.difference_update(name for name, *_ in INSTANCE_ATTRIBUTES)
-    missing = {name for name in missing if not name.startswith("gl_")}
-    if missing:
-        raise DeviceError(
-            f"program {program.label}: reads attribute "
-            f"{min(missing)!r}, which the mesh does not hold"
+        Of whatever type: a sampler of floats or of whole numbers, of a cube
+        or of a buffer.
+        """
+        gl, program = self._gl, self.name
+        count = gl.parameter("Program", program, c.ACTIVE_UNIFORMS)
+        if not count:
+            return
+        indices, blocks = (c_uint * count)(*range(count)), (c_int * count)()
+        gl.GetActiveUniformsiv(
+            program,
+            count,
+            addressof(indices),
+            c.UNIFORM_BLOCK_INDEX,
+            addressof(blocks),
         )
-    return array
+        names = self._names(
+            c.ACTIVE_UNIFORMS,
+            c.ACTIVE_UNIFORM_MAX_LENGTH,
+            lambda index, length, into: gl.GetActiveUniformName(
+                program, index, length, None, into
+            ),
+            lambda index: blocks[index] < 0,
+        )
+        gl.UseProgram(program)
+        for _, name in names:
+            location = gl.GetUniformLocation(program, name)
+            if location >= 0:
+                unit = len(self.samplers)
+                gl.Uniform1i(location, unit)
+                self.samplers[name.decode().removesuffix("[0]")] = unit
 
-
-def bind_instances(
-    array: Any, program: GlProgram, instances: Any, first: int
-) -> None:
-    """Let instance 0 of ``array`` be row ``first`` of ``instances``."""
-    for name, kind, layout, offset in INSTANCE_ATTRIBUTES:
-        location = program.attributes.get(name)
-        if location is not None:
-            array.bind(
-                location,
-                kind,
-                instances,
-                layout,
-                first * INSTANCE.itemsize + offset,
-                INSTANCE.itemsize,
-                1,
-                False,
+    def _uniform_blocks(self) -> Iterator[tuple[str, int]]:
+        """Names and bytes, in the order of their indices."""
+        gl, program = self._gl, self.name
+        size = c_int()
+        for index, name in self._names(
+            c.ACTIVE_UNIFORM_BLOCKS,
+            c.ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH,
+            lambda index, length, into: gl.GetActiveUniformBlockName(
+                program, index, length, None, into
+            ),
+        ):
+            gl.GetActiveUniformBlockiv(
+                program, index, c.UNIFORM_BLOCK_DATA_SIZE, addressof(size)
             )
+            yield name.decode(), size.value
+
+    def _names(
+        self,
+        count: int,
+        longest: int,
+        get: Callable[[int, int, int], Any],
+        is_wanted: Callable[[int], bool] = lambda _: True,
+    ) -> Iterator[tuple[int, bytes]]:
+        """Indices and names of what there are ``count`` of.
+
+        ``count`` and ``longest`` are what tells the number and the length of
+        the longest name, its zero included; ``get`` writes that of an index,
+        with so many bytes at most, to an address.
+        """
+        gl = self._gl
+        length = gl.parameter("Program", self.name, longest)
+        name = create_string_buffer(max(length, 1))
+        for index in range(gl.parameter("Program", self.name, count)):
+            if is_wanted(index):
+                get(index, length, addressof(name))
+                yield index, name.value

@@ -5,7 +5,7 @@ All of it is called on the render thread. GL 3.3 core is enough.
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, cast
 
 import numpy as np
@@ -18,7 +18,7 @@ from moka.backend.gl_commands import CommandRunner
 from moka.backend.gl_draws import DrawRunner
 from moka.backend.gl_functions import Functions
 from moka.backend.gl_info import read_info
-from moka.backend.gl_programs import BlockRegistry, GlProgram
+from moka.backend.gl_programs import BindingPoints, Explain, GlProgram
 from moka.backend.gl_readback import PixelReader
 from moka.backend.gl_state import StateCache
 from moka.backend.gl_textures import GlFramebuffer, GlTexture, SamplerCache
@@ -29,7 +29,6 @@ from moka.commands.descriptors import (
     FramebufferDescriptor,
     MeshDescriptor,
     ProgramDescriptor,
-    ShaderText,
     TextureDescriptor,
     TextureKind,
 )
@@ -58,7 +57,7 @@ class ModernGLBackend:
     def __init__(
         self,
         context: GraphicsContext,
-        explain: Callable[[str, ShaderText], str],
+        explain: Explain,
         *,
         multi_draw: bool = True,
         clip_control: bool = True,
@@ -76,7 +75,9 @@ class ModernGLBackend:
         )
         self._state = StateCache(self._gl)
         self._samplers = SamplerCache(self._gl, self.info.max_anisotropy)
-        self._blocks = BlockRegistry()
+        self._points = BindingPoints()
+        # Programs that nobody has asked whether they are linked.
+        self._begun: dict[Handle, GlProgram] = {}
         # Resources by the slots of their handles.
         self._resources: dict[tuple[ResourceKind, int], Any] = {}
         self._draws = DrawRunner(
@@ -174,19 +175,23 @@ class ModernGLBackend:
     ) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
         with self._timed("compile"):
-            try:
-                program = GlProgram(
-                    self._ctx,
-                    self._gl,
-                    descriptor,
-                    self._blocks,
-                    self._explain_log,
-                )
-            except ShaderError:
-                # The driver reports the same fault as a debug message.
-                self._context.drain_debug_messages()
-                raise
+            program = GlProgram(self._gl, descriptor)
         self._put(handle, program)
+        self._begun[handle] = program
+
+    def finish_programs(self, handles: Sequence[Handle] | None = None) -> None:
+        """See :class:`moka.backend.protocol.Backend`."""
+        if not self._begun:
+            return
+        with self._timed("compile"):
+            for handle in tuple(self._begun) if handles is None else handles:
+                try:
+                    self._begun.pop(handle).finish(self._points, self._explain)
+                except ShaderError:
+                    self.destroy(handle)
+                    # The driver reports the same fault as a debug message.
+                    self._context.drain_debug_messages()
+                    raise
         self._state.forget("program")
 
     def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
@@ -209,6 +214,7 @@ class ModernGLBackend:
     def destroy(self, handle: Handle) -> None:
         """See :class:`moka.backend.protocol.Backend`."""
         resource = self._resources.pop((handle.kind, handle.index), None)
+        self._begun.pop(handle, None)
         self._draws.forget(handle)
         if resource is not None and hasattr(resource, "release"):
             resource.release()
@@ -219,6 +225,7 @@ class ModernGLBackend:
         self, recording: Recording, stage: str = "frame"
     ) -> FrameCounters:
         """See :class:`moka.backend.protocol.Backend`."""
+        self.finish_programs()
         start = time.perf_counter()
         counters = self._execute(recording)
         spent = time.perf_counter() - start
@@ -299,6 +306,7 @@ class ModernGLBackend:
             self._reader.release()
             self._runner.release()
         self._resources.clear()
+        self._begun.clear()
         self._context.close()
 
     def _set_defaults(self) -> None:
@@ -327,12 +335,10 @@ class ModernGLBackend:
     def _get(self, handle: Handle) -> Any:
         return self._resources[handle.kind, handle.index]
 
-    def _explain_log(self, log: str, descriptor: ProgramDescriptor) -> str:
-        in_fragment = "fragment_shader" in log and "vertex_shader" not in log
-        text = descriptor.fragment if in_fragment else descriptor.vertex
-        return self._explain(log, text)
-
     def _check_errors(self, what: str) -> None:
-        for message in self._context.drain_debug_messages():
+        messages = self._context.drain_debug_messages()
+        for message in messages:
             if message.is_error:
+                # It may be about a shader that nobody has asked about yet.
+                self.finish_programs()
                 raise DeviceError(f"{what}: OpenGL reports {message}")

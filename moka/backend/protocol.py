@@ -93,7 +93,14 @@ class Backend(Protocol):
     def create_program(
         self, handle: Handle, descriptor: ProgramDescriptor
     ) -> None:
-        """Compile and link; raises ShaderError."""
+        """Begin to compile and link; nobody waits for it."""
+
+    def finish_programs(self, handles: Sequence[Handle] | None = None) -> None:
+        """Return when ``handles`` are linked, or all that have begun.
+
+        :meth:`execute` begins with the latter. Raises ShaderError for the
+        first, in the order of their making, that is not; it is destroyed.
+        """
 
     def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
         """Make a mesh."""

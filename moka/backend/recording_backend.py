@@ -4,6 +4,7 @@ It ships with moka, so that a user's own tests can assert packets too: what
 was drawn, in which order, with which resources.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -77,6 +78,9 @@ class RecordingBackend:
     ) -> None:
         """Keep the descriptor; nothing is compiled."""
         self.resources[handle] = descriptor
+
+    def finish_programs(self, handles: Sequence[Handle] | None = None) -> None:
+        """There is nothing to wait for."""
 
     def create_mesh(self, handle: Handle, descriptor: MeshDescriptor) -> None:
         """Keep the descriptor."""

@@ -17,7 +17,7 @@ import weakref
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from moka.commands.handles import Handle, HandleAllocator, ResourceKind
 from moka.core.errors import DeviceError
@@ -47,6 +47,8 @@ if TYPE_CHECKING:
     from moka.graphics.calling_thread import CallingThread
 
 __all__ = ["Frame", "GraphicsDevice"]
+
+T = TypeVar("T")
 
 _device_numbers = itertools.count()
 
@@ -112,6 +114,7 @@ class GraphicsDevice:
             self._thread = open_backend
         self._info: BackendInfo | None = None
         self._in_flight: Frame | None = None
+        self._has_begun_programs = False
         self._checked: dict[frozenset[Handle], int] = {}
         self._releases = 0
         self._counting = threading.Lock()
@@ -235,22 +238,40 @@ class GraphicsDevice:
 
         With ``wait`` a shader that does not compile raises ShaderError here
         and the device stays usable; without, the next call raises it and
-        the device is closed for work.
+        the device is closed for work. Without, too, nobody waits for the
+        driver before the next list is executed, so that it may compile
+        several side by side.
         """
+        if wait:
+            return self.create_programs([descriptor])[0]
         handle = self._handles.allocate(ResourceKind.PROGRAM)
-
-        def create(backend: Backend) -> None:
-            backend.create_program(handle, descriptor)
-
-        if not wait:
-            self._thread.post(create)
-            return handle
-        try:
-            self._thread.call(create)
-        except BaseException:
-            self._handles.release(handle)
-            raise
+        self._thread.post(
+            lambda backend: backend.create_program(handle, descriptor)
+        )
+        self._has_begun_programs = True
         return handle
+
+    def create_programs(
+        self, descriptors: Sequence[ProgramDescriptor]
+    ) -> list[Handle]:
+        """Several programs, which the driver may compile side by side.
+
+        Returns when they are linked. Raises ShaderError for the first that
+        does not compile or link; there is none then, and the device stays
+        usable.
+        """
+        if not descriptors:
+            return []
+        handles = [
+            self._handles.allocate(ResourceKind.PROGRAM) for _ in descriptors
+        ]
+        try:
+            self._call(partial(_create_programs, handles, descriptors))
+        except BaseException:
+            for handle in handles:
+                self._handles.release(handle)
+            raise
+        return handles
 
     def create_mesh(self, descriptor: MeshDescriptor) -> Handle:
         """A mesh over existing buffers."""
@@ -365,17 +386,17 @@ class GraphicsDevice:
         bottom row of a rendered one.
         """
         self._handles.check(texture, ResourceKind.TEXTURE)
-        return self._thread.call(
+        return self._call(
             lambda backend: backend.read_texture(texture, level, face)
         )
 
     def stage_seconds(self) -> dict[str, float]:
         """Where the render thread's time went so far, by stage."""
-        return self._thread.call(lambda backend: backend.stage_seconds())
+        return self._call(lambda backend: backend.stage_seconds())
 
     def finish(self) -> None:
         """Return when the GPU has done everything submitted so far."""
-        self._thread.call(lambda backend: backend.finish())
+        self._call(lambda backend: backend.finish())
 
     def close(self) -> None:
         """Free everything and end the render thread; may be called twice.
@@ -388,6 +409,17 @@ class GraphicsDevice:
         if not self._thread.close():
             raise DeviceError("the render thread does not end")
 
+    def _call(self, function: Callable[[Backend], T]) -> T:
+        """What ``function`` returns, called when all else has been done.
+
+        Programs that nobody waits for are finished by a job of its own: its
+        error closes the device for work, as that of any other would.
+        """
+        if self._has_begun_programs:
+            self._has_begun_programs = False
+            self._thread.post(lambda backend: backend.finish_programs())
+        return self._thread.call(function)
+
     def _check(self, handles: frozenset[Handle]) -> None:
         for handle in handles:
             self._handles.check(handle)
@@ -398,3 +430,21 @@ class GraphicsDevice:
 
 def _destroy(handle: Handle, backend: Backend) -> None:
     backend.destroy(handle)
+
+
+def _create_programs(
+    handles: Sequence[Handle],
+    descriptors: Sequence[ProgramDescriptor],
+    backend: Backend,
+) -> None:
+    """Begin all of them, then wait; none is left where one fails."""
+    begun = []
+    try:
+        for handle, descriptor in zip(handles, descriptors, strict=True):
+            backend.create_program(handle, descriptor)
+            begun.append(handle)
+        backend.finish_programs(handles)
+    except BaseException:
+        for handle in begun:
+            backend.destroy(handle)
+        raise

@@ -37,6 +37,9 @@ _MESSAGES = (
     re.compile(r"ERROR: \d+:(\d+): (.*)"),
 )
 
+# Above what NVIDIA's linker says of the vertex or of the fragment shader.
+_HEADINGS = {"Vertex info": 0, "Fragment info": -1}
+
 
 def load_shader(
     name: str,
@@ -83,22 +86,33 @@ def preprocess_shader(
     return reader.text(head, reader.expand(name, lines))
 
 
-def explain_log(log: str, text: ShaderText) -> str:
+def explain_log(log: str, *texts: ShaderText) -> str:
     """The first error in a driver's ``log`` as ``file:line: message``.
 
-    ``text`` is the shader the log is about. An error without a line, as
-    linkers give, is reported for the shader as a whole. Never more than one
-    line; the log itself holds the rest.
+    ``texts`` are the shaders that the log is about: one, or the vertex and
+    the fragment shader of a program that does not link. An error without a
+    line, as linkers give, is reported for the shader, or both, as a whole.
+    Never more than one line; the log itself holds the rest.
     """
-    lines = [line.strip() for line in log.splitlines() if line.strip()]
-    for line in lines:
-        for pattern in _MESSAGES:
-            if match := pattern.match(line):
-                return f"{_position(int(match[1]), text)}: {match[2]}"
-    shader = text.files[1] if len(text.files) > 1 else "shader"
-    errors = [line for line in lines if "error" in line.lower()]
-    message = (errors or lines or ["failed without a message"])[0]
-    return f"{shader}: {message.removeprefix('error: ')}"
+    about = texts
+    whole = []
+    for line in filter(None, map(str.strip, log.splitlines())):
+        if line in _HEADINGS:
+            about = (texts[_HEADINGS[line]],)
+            continue
+        found = (pattern.match(line) for pattern in _MESSAGES)
+        match = next(filter(None, found), None)
+        if match and len(about) == 1:
+            return f"{_position(int(match[1]), about[0])}: {match[2]}"
+        whole.append((about, line))
+    errors = [each for each in whole if "error" in each[1].lower()]
+    nothing = (texts, "failed without a message")
+    about, message = (errors or whole or [nothing])[0]
+    # Two texts of one file, or of none, have one name.
+    names = dict.fromkeys(
+        text.files[1] if len(text.files) > 1 else "shader" for text in about
+    )
+    return f"{' and '.join(names)}: {message.removeprefix('error: ')}"
 
 
 def _position(line: int, text: ShaderText) -> str:

@@ -365,7 +365,7 @@ def test_closing_leaves_only_what_the_host_has_made(host: Host) -> None:
                     f"glIs{kind}", ctypes.c_ubyte, ctypes.c_uint
                 )(name)
             ]
-            for kind in (*kinds, "Sampler")
+            for kind in (*kinds, "Sampler", "Shader")
         }
 
     host.target.use()
@@ -417,9 +417,12 @@ def test_an_error_leaves_state_and_device_in_order(host: Host) -> None:
     before = host.state()
     broken = ShaderText("#version 330 core\nvoid main() { nonsense }")
     with GraphicsDevice.embed(host.gl) as device:
-        with pytest.raises(ShaderError):
-            device.create_program(ProgramDescriptor(broken, broken))
-        assert host.state() == before
+        for wait in (False, True):
+            with pytest.raises(ShaderError, match="syntax error"):
+                device.create_program(
+                    ProgramDescriptor(broken, broken), wait=wait
+                )
+            assert host.state() == before
         draw_scene(device)
     np.testing.assert_array_equal(picture(host.target), own_picture())
 

@@ -1,7 +1,7 @@
 """The device over a backend on paper: handles, frames, packets."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -170,6 +170,79 @@ def test_a_shader_error_that_is_waited_for_leaves_the_device_usable(
         device.create_program(descriptor, wait=True)
     device.finish()
     assert device.count(ResourceKind.PROGRAM) == 0
+
+
+class Driver(RecordingBackend):
+    """Says of what is called broken, once it is asked, that it is."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard: list[str] = []
+        self._begun: dict[Handle, str] = {}
+
+    def create_program(self, handle, descriptor):  # type: ignore[no-untyped-def]
+        super().create_program(handle, descriptor)
+        self._begun[handle] = descriptor.label
+        self.heard.append(f"begin {descriptor.label}")
+
+    def finish_programs(self, handles=None):  # type: ignore[no-untyped-def]
+        for handle in tuple(self._begun) if handles is None else handles:
+            label = self._begun.pop(handle)
+            self.heard.append(f"finish {label}")
+            if label == "broken":
+                raise ShaderError("surface.frag:3: nonsense")
+
+    def execute(self, recording, stage="frame"):  # type: ignore[no-untyped-def]
+        self.finish_programs()
+        return super().execute(recording, stage)
+
+
+def labelled(label: str) -> ProgramDescriptor:
+    return ProgramDescriptor(ShaderText("v"), ShaderText("f"), label)
+
+
+def test_programs_begin_one_after_the_other_and_then_are_waited_for() -> None:
+    driver = Driver()
+    with GraphicsDevice(lambda: driver) as device:
+        device.create_program(labelled("early"))
+        device.create_programs([labelled("a"), labelled("b")])
+        assert device.create_programs([]) == []
+    assert driver.heard == [
+        *("begin early", "finish early"),
+        *("begin a", "begin b", "finish a", "finish b"),
+    ]
+
+
+def test_of_several_programs_there_are_all_or_none() -> None:
+    driver = Driver()
+    with GraphicsDevice(lambda: driver) as device:
+        labels = ("a", "broken", "c")
+        with pytest.raises(ShaderError, match=r"surface\.frag:3"):
+            device.create_programs([labelled(label) for label in labels])
+        device.finish()
+        assert not driver.resources
+        assert device.count(ResourceKind.PROGRAM) == 0
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        GraphicsDevice.finish,
+        GraphicsDevice.stage_seconds,
+        lambda device: device.submit(CommandList()).wait(),
+        lambda device: device.create_program(labelled("late"), wait=True),
+    ],
+)
+def test_a_program_that_is_not_waited_for_fails_at_the_next_call(
+    call: Callable[[GraphicsDevice], object],
+) -> None:
+    with GraphicsDevice(Driver) as device:
+        device.create_program(labelled("broken"))
+        with pytest.raises(ShaderError, match=r"surface\.frag:3"):
+            call(device)
+        # The device is closed for work.
+        with pytest.raises(ShaderError):
+            device.finish()
 
 
 def test_read_backs_are_filled(device: GraphicsDevice) -> None:

@@ -180,6 +180,36 @@ def test_a_log_is_explained_by_file_and_line(log, expected):
     assert explain_log(log, text) == expected
 
 
+@pytest.mark.parametrize(
+    ("log", "expected"),
+    [
+        # Mesa has no lines for what two shaders do to each other.
+        ("error: `f' differs\n", "a.vert and a.frag: `f' differs"),
+        (
+            "Vertex info\n-----------\n0(20012) : error C1: bad `f'\n",
+            "b.glsl:12: bad `f'",
+        ),
+        (
+            "Vertex info\n-----------\n0(10003) : warning C7: well\n\n"
+            "Fragment info\n-------------\n0(20007) : error C1: bad `f'\n"
+            "(0) : error C2003: incompatible options for link\n",
+            "c.glsl:7: bad `f'",
+        ),
+        (
+            "Vertex info\n-----------\n(0) : error C5145: no gl_Position\n",
+            "a.vert: (0) : error C5145: no gl_Position",
+        ),
+        # In whose line?
+        ("ERROR: 0:20003: bad", "a.vert and a.frag: ERROR: 0:20003: bad"),
+        ("", "a.vert and a.frag: failed without a message"),
+    ],
+)
+def test_a_log_of_the_linker_names_the_shaders_it_is_about(log, expected):
+    vertex = ShaderText("", ("head", "a.vert", "b.glsl"))
+    fragment = ShaderText("", ("head", "a.frag", "c.glsl"))
+    assert explain_log(log, vertex, fragment) == expected
+
+
 @pytest.mark.gpu
 @pytest.mark.parametrize(
     ("broken", "line"),
