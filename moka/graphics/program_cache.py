@@ -11,7 +11,6 @@ from msgspec import Struct
 
 from moka.commands.descriptors import ProgramDescriptor
 from moka.commands.handles import Handle
-from moka.core.errors import ShaderError
 from moka.graphics.device import GraphicsDevice
 
 __all__ = ["ProgramCache"]
@@ -61,16 +60,18 @@ class ProgramCache:
             return self._reload()
 
     def _reload(self) -> int:
-        fresh: dict[Hashable, _Loaded] = {}
-        try:
-            for key, loaded in self._programs.items():
-                descriptor = loaded.describe()
-                if descriptor != loaded.descriptor:
-                    handle = self._device.create_program(descriptor, wait=True)
-                    fresh[key] = _Loaded(handle, descriptor, loaded.describe)
-        except ShaderError:
-            self._device.destroy(*(new.handle for new in fresh.values()))
-            raise
+        changed = {
+            key: descriptor
+            for key, loaded in self._programs.items()
+            if (descriptor := loaded.describe()) != loaded.descriptor
+        }
+        handles = self._device.create_programs(list(changed.values()))
+        fresh = {
+            key: _Loaded(handle, descriptor, self._programs[key].describe)
+            for handle, (key, descriptor) in zip(
+                handles, changed.items(), strict=True
+            )
+        }
         self._device.destroy(*(self._programs[key].handle for key in fresh))
         self._programs.update(fresh)
         return len(fresh)

@@ -13,17 +13,27 @@ from moka.graphics.program_cache import ProgramCache
 
 
 class Strict(RecordingBackend):
-    """Compiles all but what is called broken."""
+    """Links all but what is called broken; knows how many were begun."""
 
-    def create_program(self, handle, descriptor):  # type: ignore[no-untyped-def]
-        if "broken" in descriptor.fragment.source:
-            raise ShaderError("a.frag:1: broken")
-        super().create_program(handle, descriptor)
+    begun: tuple[int, ...] = ()
+
+    def finish_programs(self, handles=None):  # type: ignore[no-untyped-def]
+        if handles is None:
+            return
+        self.begun = (*self.begun, len(handles))
+        for handle in handles:
+            if "broken" in self.resources[handle].fragment.source:
+                raise ShaderError("a.frag:1: broken")
 
 
 @pytest.fixture
-def device() -> Iterator[GraphicsDevice]:
-    with GraphicsDevice(Strict) as opened:
+def backend() -> Strict:
+    return Strict()
+
+
+@pytest.fixture
+def device(backend: Strict) -> Iterator[GraphicsDevice]:
+    with GraphicsDevice(lambda: backend) as opened:
         yield opened
 
 
@@ -57,6 +67,18 @@ def test_what_has_changed_is_compiled_anew_and_nothing_else(
     assert device.count(ResourceKind.PROGRAM) == 2
     with pytest.raises(CommandError):
         device.destroy(before["b"])
+
+
+def test_all_that_have_changed_are_compiled_side_by_side(
+    device: GraphicsDevice, backend: Strict
+) -> None:
+    cache = ProgramCache(device)
+    sources = dict.fromkeys("abc", "one")
+    for name in sources:
+        cache.get(name, lambda name=name: describe(sources, name))
+    sources.update(a="two", c="three")
+    assert cache.reload() == 2
+    assert backend.begun == (2,)
 
 
 def test_a_broken_one_changes_nothing(device: GraphicsDevice) -> None:
