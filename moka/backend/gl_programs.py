@@ -20,6 +20,9 @@ from moka.core.errors import ShaderError
 
 __all__ = ["BindingPoints", "Explain", "GlProgram"]
 
+# Samplers of a program are hardly ever more.
+_UNIFORMS_AT_ONCE = 16
+
 
 class Explain(Protocol):
     """Turns a driver's log into one line that names file and line.
@@ -81,17 +84,12 @@ class GlProgram:
 
         It may be the current program then. Raises ShaderError.
         """
-        gl, name = self._gl, self.name
         # What does not compile does not link: one question is enough.
-        if not gl.parameter("Program", name, c.LINK_STATUS):
+        if not self._gl.parameter("Program", self.name, c.LINK_STATUS):
             raise ShaderError(self._fault(explain))
         self._release_shaders()
         self._find_attributes()
-        self._find_samplers()
-        for block, size in self._uniform_blocks():
-            point = points.point(block)
-            gl.UniformBlockBinding(name, len(self.blocks), point)
-            self.blocks[block] = (point, size)
+        self._find_samplers(self._find_blocks(points))
         points.units = max(points.units, len(self.samplers))
 
     def release(self) -> None:
@@ -145,44 +143,10 @@ class GlProgram:
                 location = gl.GetAttribLocation(program, name)
                 self.attributes[name.decode()] = location
 
-    def _find_samplers(self) -> None:
-        """Uniforms outside of blocks are samplers; values live in blocks.
-
-        Of whatever type: a sampler of floats or of whole numbers, of a cube
-        or of a buffer.
-        """
+    def _find_blocks(self, points: BindingPoints) -> int:
+        """Bind all uniform blocks; how many uniforms are members of one."""
         gl, program = self._gl, self.name
-        count = gl.parameter("Program", program, c.ACTIVE_UNIFORMS)
-        if not count:
-            return
-        indices, blocks = (c_uint * count)(*range(count)), (c_int * count)()
-        gl.GetActiveUniformsiv(
-            program,
-            count,
-            addressof(indices),
-            c.UNIFORM_BLOCK_INDEX,
-            addressof(blocks),
-        )
-        names = self._names(
-            c.ACTIVE_UNIFORMS,
-            c.ACTIVE_UNIFORM_MAX_LENGTH,
-            lambda index, length, into: gl.GetActiveUniformName(
-                program, index, length, None, into
-            ),
-            lambda index: blocks[index] < 0,
-        )
-        gl.UseProgram(program)
-        for _, name in names:
-            location = gl.GetUniformLocation(program, name)
-            if location >= 0:
-                unit = len(self.samplers)
-                gl.Uniform1i(location, unit)
-                self.samplers[name.decode().removesuffix("[0]")] = unit
-
-    def _uniform_blocks(self) -> Iterator[tuple[str, int]]:
-        """Names and bytes, in the order of their indices."""
-        gl, program = self._gl, self.name
-        size = c_int()
+        value, members = c_int(), 0
         for index, name in self._names(
             c.ACTIVE_UNIFORM_BLOCKS,
             c.ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH,
@@ -191,16 +155,78 @@ class GlProgram:
             ),
         ):
             gl.GetActiveUniformBlockiv(
-                program, index, c.UNIFORM_BLOCK_DATA_SIZE, addressof(size)
+                program,
+                index,
+                c.UNIFORM_BLOCK_ACTIVE_UNIFORMS,
+                addressof(value),
             )
-            yield name.decode(), size.value
+            members += value.value
+            gl.GetActiveUniformBlockiv(
+                program, index, c.UNIFORM_BLOCK_DATA_SIZE, addressof(value)
+            )
+            point = points.point(name.decode())
+            gl.UniformBlockBinding(program, index, point)
+            self.blocks[name.decode()] = (point, value.value)
+        return members
+
+    def _find_samplers(self, members: int) -> None:
+        """Uniforms outside of blocks are samplers; values live in blocks.
+
+        Of whatever type: a sampler of floats or of whole numbers, of a cube
+        or of a buffer. So many uniforms are ``members`` of blocks.
+        """
+        gl, program = self._gl, self.name
+        indices = self._outside_of_blocks(members)
+        if not indices:
+            return
+        gl.UseProgram(program)
+        length = gl.parameter("Program", program, c.ACTIVE_UNIFORM_MAX_LENGTH)
+        name = create_string_buffer(length)
+        for index in indices:
+            gl.GetActiveUniformName(
+                program, index, length, None, addressof(name)
+            )
+            location = gl.GetUniformLocation(program, name.value)
+            if location >= 0:
+                unit = len(self.samplers)
+                gl.Uniform1i(location, unit)
+                self.samplers[name.value.decode().removesuffix("[0]")] = unit
+
+    def _outside_of_blocks(self, members: int) -> list[int]:
+        """Indices of the uniforms that are in no block, in their order.
+
+        A page of the material table alone has thousands of members. Mesa,
+        which has the others behind them, takes the time of an index to find
+        what is there: looking from the end on for as many as there must be
+        is a twentieth of asking for all.
+        """
+        gl, program = self._gl, self.name
+        end = gl.parameter("Program", program, c.ACTIVE_UNIFORMS)
+        wanted, found = end - members, list[int]()
+        while end and len(found) < wanted:
+            count = min(end, _UNIFORMS_AT_ONCE)
+            end -= count
+            indices = (c_uint * count)(*range(end, end + count))
+            blocks = (c_int * count)()
+            gl.GetActiveUniformsiv(
+                program,
+                count,
+                addressof(indices),
+                c.UNIFORM_BLOCK_INDEX,
+                addressof(blocks),
+            )
+            found += [
+                index
+                for index, block in zip(indices, blocks, strict=True)
+                if block < 0
+            ]
+        return sorted(found)
 
     def _names(
         self,
         count: int,
         longest: int,
         get: Callable[[int, int, int], Any],
-        is_wanted: Callable[[int], bool] = lambda _: True,
     ) -> Iterator[tuple[int, bytes]]:
         """Indices and names of what there are ``count`` of.
 
@@ -212,6 +238,5 @@ class GlProgram:
         length = gl.parameter("Program", self.name, longest)
         name = create_string_buffer(max(length, 1))
         for index in range(gl.parameter("Program", self.name, count)):
-            if is_wanted(index):
-                get(index, length, addressof(name))
-                yield index, name.value
+            get(index, length, addressof(name))
+            yield index, name.value

@@ -76,6 +76,23 @@ def test_what_is_outside_of_blocks_is_a_sampler() -> None:
     ]
 
 
+@pytest.mark.parametrize("places", [(), (0,), (99,), (0, 17, 98), (40, 41)])
+def test_samplers_are_found_among_many_members(places: tuple[int, ...]) -> None:
+    uniforms = {
+        f"uniform_{index}": -1 if index in places else 0 for index in range(100)
+    }
+    driver = PaperDriver(uniforms=uniforms, blocks={"Materials": 16384})
+    program = GlProgram(driver.functions, describe())
+    program.finish(BindingPoints(), explain)
+    expected = [f"uniform_{place}" for place in places]
+    assert list(program.samplers) == expected
+    asked = sum(each[1] for each in driver.called("GetActiveUniformsiv"))
+    assert asked <= 100
+    if places == (99,):
+        # Where the last ones are all that there are, others are not looked at.
+        assert asked < 20
+
+
 def test_units_are_those_of_the_program_that_reads_most() -> None:
     points = BindingPoints()
     for uniforms in ({}, {"a": -1, "b": -1}, {"a": -1}):

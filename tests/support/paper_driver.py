@@ -153,8 +153,13 @@ class PaperDriver:
     def _get_active_uniform_blockiv(
         self, _program: int, index: int, what: int, into: int
     ) -> None:
-        assert what == c.UNIFORM_BLOCK_DATA_SIZE
-        _write(into, list(self._blocks.values())[index])
+        known = {
+            c.UNIFORM_BLOCK_DATA_SIZE: list(self._blocks.values())[index],
+            c.UNIFORM_BLOCK_ACTIVE_UNIFORMS: list(
+                self._uniforms.values()
+            ).count(index),
+        }
+        _write(into, known[what])
 
 
 def _longest(names: Sequence[str] | Mapping[str, int]) -> int:
