@@ -129,6 +129,7 @@ def _point(
 
     def finished(maker: LightingMaker) -> None:
         lighting = maker.make(request())
+        lighting.maps.fill()
         device.finish()
         lighting.maps.destroy(device)
 

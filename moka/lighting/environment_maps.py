@@ -1,5 +1,7 @@
 """The textures that one environment is on the GPU, and how they are read."""
 
+from collections.abc import Callable
+
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
@@ -46,7 +48,8 @@ class EnvironmentMaps(Struct):
     lack the suns. ``irradiance`` is a cube of E / pi, without them too;
     ``radiance`` is the environment itself without them, with levels, as
     filtered lighting samples it. ``importance`` is the table by which
-    reference lighting samples ``map``.
+    reference lighting samples ``map``. The cubes hold nothing before
+    :meth:`fill`, for which ``draw`` is kept.
     """
 
     map: Handle | None = None
@@ -57,6 +60,7 @@ class EnvironmentMaps(Struct):
     radiance_levels: int = 1
     importance: Handle | None = None
     resources: list[Handle] = []
+    draw: Callable[[], None] | None = None
 
     @property
     def lights_surfaces(self) -> bool:
@@ -70,8 +74,19 @@ class EnvironmentMaps(Struct):
         self.map = upload_map(device, pixels)
         self.resources.append(self.map)
 
+    def fill(self) -> None:
+        """Have drawn what the cubes hold, the first time.
+
+        Apart from their making, so that the programs of whatever reads them
+        are compiled beside those that draw them.
+        """
+        if self.draw is not None:
+            draw, self.draw = self.draw, None
+            draw()
+
     def destroy(self, device: GraphicsDevice) -> None:
         """Destroy all of it."""
+        self.fill()  # Lets go of what only this needs.
         device.destroy(*self.resources)
         self.resources.clear()
 

@@ -135,6 +135,7 @@ class LightingCache:
 
     def _read_lighting(self, lighting: EnvironmentLighting) -> Arrays:
         maps = lighting.maps
+        maps.fill()
         arrays: dict[str, NDArray[Any]] = {
             "suns": np.array(
                 [

@@ -39,7 +39,7 @@ class LightingMaker:
     def make(
         self, request: LightingRequest, told: "Told | None" = None
     ) -> EnvironmentLighting:
-        """What ``request`` asks for, to be destroyed by the caller.
+        """What ``request`` asks for, to be filled and destroyed by the caller.
 
         ``told`` is make_lighting's.
         """

@@ -34,7 +34,7 @@ def make_lighting(
     request: LightingRequest,
     told: Told | None = None,
 ) -> EnvironmentLighting:
-    """What ``request`` asks for, to be destroyed by the caller.
+    """What ``request`` asks for, to be filled and destroyed by the caller.
 
     If one is ``told`` of it, on any thread, in pieces between which the
     device draws what others submit.

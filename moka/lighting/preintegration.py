@@ -75,7 +75,7 @@ class Preintegrator:
         radiance: bool = False,
         half: bool = False,
     ) -> EnvironmentMaps:
-        """Make what is asked for of ``environment``.
+        """Make what is asked for of ``environment``, to be filled.
 
         ``irradiance`` asks for a cube of it; ``radiance``, with one of the
         two before, to keep the cube that they are made from. Of a uniform
@@ -155,4 +155,6 @@ class Preintegrator:
             maps.radiance = passes.kept(source)
             maps.radiance_levels = size.bit_length()
             maps.resources.append(source)
-        passes.run()
+        maps.draw = passes.run
+        if self._told is not None:
+            maps.fill()

@@ -121,7 +121,8 @@ class PreparedScene:
             Permutation(description, lighting)
             for description in materials.descriptions
         ]
-        # Programs first: the render thread compiles while images decode.
+        # Programs first: they compile while images decode, beside those that
+        # integrate the light.
         surfaces = [
             programs.get(permutation, permutation.program)
             for permutation in permutations
@@ -130,6 +131,7 @@ class PreparedScene:
         if lighting.visibility:
             seen = programs.get(visibility_program, visibility_program)
             drawn = [seen] * len(surfaces)
+        shared.maps.fill()
         wanted = [
             (primitives[position], description.attributes)
             for position, description in zip(

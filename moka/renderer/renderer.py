@@ -231,13 +231,18 @@ class Renderer:
         cannot be had.
         """
         seen = self._look(scene, camera)
-        # Before anything that may have to wait for images.
+        # What can be, and programs above all, before what waits for images.
         samples = self._visibility_choice.samples(
             self.settings, seen.materials, scene.drawables
         )
         targets = self._targets.update(self.size, self.settings, samples)
         self._update_maps(seen)
         lights = self._sources.rows(scene, seen.view.position)
+        # Frames that are accumulated have theirs in every one of them.
+        self._sky_behind = (
+            None if self.settings.accumulates else self._sky(seen)
+        )
+        display = self._display_program(scene, targets)
         prepared = self._scene.update(seen, self.settings, lights, samples)
         if self.settings.accumulates:
             self._progressive.begin(
@@ -249,7 +254,7 @@ class Renderer:
             )
         if not self.settings.accumulates or not self._progressive.is_finished:
             self._draw_scene(seen, lights, targets, commands)
-        self._draw_display(scene, targets, commands)
+        self._draw_display(scene, display, targets, commands)
         self._count(seen, prepared.permutation_count)
 
     def read_display(self, commands: CommandList) -> Readback:
@@ -382,34 +387,52 @@ class Renderer:
         self._scene_pass.draw(
             seen, settings, self.size, lights, self.area, commands
         )
-        self._sky_behind = self._sky_map.behind(
-            seen.scene,
-            seen.view,
-            self.size[1],
-            float_target=settings.has_float_target,
-        )
         if settings.accumulates:
-            # What is averaged over frames has its sky in every one of them.
-            if self._sky_behind is not None:
+            sky = self._sky(seen)
+            if sky is not None:
                 key = SortKey(PASS_SCENE, LAYER_BACKGROUND, Stage.OPAQUE)
-                self._screen.draw_background(commands, key, self._sky_behind)
-                self._sky_behind = None
+                self._screen.draw_background(commands, key, sky)
             self._progressive.accumulate(
                 commands, SortKey(PASS_ACCUMULATE), targets
             )
 
+    def _sky(self, seen: FrameScene) -> Sky | None:
+        return self._sky_map.behind(
+            seen.scene,
+            seen.view,
+            self.size[1],
+            float_target=self.settings.has_float_target,
+        )
+
+    def _display_program(self, scene: Scene, targets: Targets) -> Handle:
+        return self._screen.display_program(
+            targets,
+            self._sky_behind,
+            tone_map="stops" if self.shows_stops else self.settings.tone_map,
+            has_gamma=self._gamma is not None,
+            has_background=not isinstance(scene.background, str),
+        )
+
+    @property
+    def _gamma(self) -> float | None:
+        return None if self.shows_stops else self.settings.gamma
+
     def _draw_display(
-        self, scene: Scene, targets: Targets, commands: CommandList
+        self,
+        scene: Scene,
+        program: Handle,
+        targets: Targets,
+        commands: CommandList,
     ) -> None:
         colour = scene.background
         self._screen.draw_display(
             commands,
             SortKey(PASS_DISPLAY),
+            program,
             targets,
             self._sky_behind,
-            tone_map="stops" if self.shows_stops else self.settings.tone_map,
             exposure=self.settings.exposure,
-            gamma=None if self.shows_stops else self.settings.gamma,
+            gamma=self._gamma,
             background=None if isinstance(colour, str) else colour,
             window=self.size if self._to_window else None,
             area=self.area,

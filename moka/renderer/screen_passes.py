@@ -185,30 +185,52 @@ class ScreenPasses:
 
         ``sky`` is what lies behind the scene and has not been drawn there.
         """
-        defines, textures = self._scene(buffer, targets, sky)
+        textures = self._scene(buffer, targets, sky)
         buffer.bind_framebuffer(targets.resolved)
         buffer.draw(
-            self._program("resolve.frag", defines),
+            self._program("resolve.frag", _scene_defines(targets, sky)),
             self._passes.triangle,
             self._group(BindGroupDescriptor(textures, (self._sky_block,))),
             FULLSCREEN,
         )
 
-    def draw_display(
+    def display_program(
         self,
-        commands: CommandList,
-        key: SortKey,
         targets: Targets,
         sky: Sky | None,
         *,
         tone_map: str,
+        has_gamma: bool,
+        has_background: bool,
+    ) -> Handle:
+        """The program of :meth:`draw_display`; ``sky`` is as there.
+
+        Apart from it, to be compiled while something else is waited for.
+        """
+        defines = _scene_defines(targets, sky)
+        defines["MOKA_DISPLAY"] = 1
+        defines[f"MOKA_TONE_MAP_{tone_map.upper()}"] = 1
+        if has_background:
+            defines["MOKA_BACKGROUND_COLOUR"] = 1
+        if has_gamma:
+            defines["MOKA_ENCODE_GAMMA"] = 1
+        return self._program("tone_map.frag", defines)
+
+    def draw_display(
+        self,
+        commands: CommandList,
+        key: SortKey,
+        program: Handle,
+        targets: Targets,
+        sky: Sky | None,
+        *,
         exposure: float,
         gamma: float | None,
         background: tuple[float, float, float] | None,
         window: tuple[int, int] | None,
         area: tuple[int, int, int, int] | None = None,
     ) -> None:
-        """Average the samples, expose, tone map and encode.
+        """Average the samples, expose, tone map and encode by ``program``.
 
         ``gamma`` encodes by a power, None as sRGB.
 
@@ -225,13 +247,7 @@ class ScreenPasses:
         )
         buffer = commands.command_buffer(key)
         buffer.fill_buffer(self._tone_map, values)
-        defines, textures = self._scene(buffer, targets, sky)
-        defines["MOKA_DISPLAY"] = 1
-        defines[f"MOKA_TONE_MAP_{tone_map.upper()}"] = 1
-        if background is not None:
-            defines["MOKA_BACKGROUND_COLOUR"] = 1
-        if gamma is not None:
-            defines["MOKA_ENCODE_GAMMA"] = 1
+        textures = self._scene(buffer, targets, sky)
         blocks = (self._sky_block, UniformBinding("ToneMap", self._tone_map))
         if window is None:
             buffer.bind_framebuffer(targets.display)
@@ -240,7 +256,7 @@ class ScreenPasses:
             buffer.viewport(0, 0, *window)
         buffer.scissor(area)
         buffer.draw(
-            self._program("tone_map.frag", defines),
+            program,
             self._passes.triangle,
             self._group(BindGroupDescriptor(textures, blocks)),
             FULLSCREEN,
@@ -248,19 +264,15 @@ class ScreenPasses:
 
     def _scene(
         self, buffer: CommandBuffer, targets: Targets, sky: Sky | None
-    ) -> tuple[dict[str, str | int], tuple[TextureBinding, ...]]:
-        """Defines and textures of scene_radiance.glsl."""
-        defines: dict[str, str | int] = {}
-        textures = [
-            TextureBinding("radiance_map", targets.scene_texture, CUBE_SAMPLER)
-        ]
-        if targets.samples > 1:
-            defines["MOKA_SAMPLES"] = targets.samples
-        if sky is not None:
-            defines |= sky.defines
-            textures.append(sky.binding)
-            buffer.fill_buffer(self._background, sky.block)
-        return defines, tuple(textures)
+    ) -> tuple[TextureBinding, ...]:
+        """What scene_radiance.glsl reads: textures, and the sky's block."""
+        scene = TextureBinding(
+            "radiance_map", targets.scene_texture, CUBE_SAMPLER
+        )
+        if sky is None:
+            return (scene,)
+        buffer.fill_buffer(self._background, sky.block)
+        return scene, sky.binding
 
     def _program(self, fragment: str, defines: dict[str, str | int]) -> Handle:
         return self._passes.program(fragment, defines, vertex="screen.vert")
@@ -281,3 +293,13 @@ class ScreenPasses:
             ),
             np.zeros(layout.size, np.uint8),
         )
+
+
+def _scene_defines(targets: Targets, sky: Sky | None) -> dict[str, str | int]:
+    """The defines of scene_radiance.glsl."""
+    defines: dict[str, str | int] = {}
+    if targets.samples > 1:
+        defines["MOKA_SAMPLES"] = targets.samples
+    if sky is not None:
+        defines |= sky.defines
+    return defines

@@ -88,6 +88,7 @@ class VisibilityBuffer:
         self._mask: Handle | None = None
         if samples > 1:
             self._mask = self._framebuffer((), depth)
+            self._mask_program()  # Compiles while images decode.
             self._mask_group = self._keep(
                 device.create_bind_group(
                     BindGroupDescriptor((self._triangle_binding,))
@@ -151,10 +152,7 @@ class VisibilityBuffer:
             buffer.clear(None, 0.0)
             buffer.scissor(within)
             buffer.draw(
-                self._passes.program(
-                    "visible_pixels.frag",
-                    {**_NEAR, "MOKA_VISIBILITY": self._samples},
-                ),
+                self._mask_program(),
                 self._passes.triangle,
                 self._mask_group,
                 _MARK,
@@ -169,6 +167,11 @@ class VisibilityBuffer:
             self._passes.triangle,
             group,
             _WHERE_SOMETHING_IS,
+        )
+
+    def _mask_program(self) -> Handle:
+        return self._passes.program(
+            "visible_pixels.frag", {**_NEAR, "MOKA_VISIBILITY": self._samples}
         )
 
     def _bind_group(self, prepared: "PreparedScene", texels: int) -> Handle:

@@ -29,6 +29,12 @@ from moka.commands.handles import Handle
 from moka.core.errors import ContextError, DeviceError, ShaderError
 from moka.graphics.device import GraphicsDevice
 from moka.graphics.shader_source import explain_log, preprocess_shader
+from moka.lighting.environment import load_environment
+from moka.model import demo_model
+from moka.renderer.renderer import Renderer
+from moka.renderer.settings import RenderSettings
+from moka.scene.camera import Camera
+from moka.scene.scene import Scene
 from tests.support.drawing import (
     Canvas,
     nothing_bound,
@@ -164,6 +170,32 @@ def test_several_that_are_waited_for_link_side_by_side(
     assert names.index("glGetProgramiv") > names.index("glLinkProgram")
     assert "glLinkProgram" not in names[names.index("glGetProgramiv") :]
     assert [covered(heard, each)[8, 8, 2] for each in programs] == [0.25, 0.5]
+
+
+@pytest.mark.parametrize("shading", ["forward", "visibility"])
+@pytest.mark.parametrize("background", ["environment", (1.0, 0.5, 0.0)])
+def test_a_picture_begins_all_its_programs_before_one_is_asked_for(
+    heard: GraphicsDevice, listener: Listener, shading: str, background: Any
+) -> None:
+    """Those of its light too, which has to be integrated first."""
+    size = (32, 32)
+    scene, camera = Scene(), Camera()
+    scene.add(demo_model())
+    scene.environment = load_environment("studio")
+    scene.background = background
+    camera.frame(scene.bounds(), 1.0)
+    renderer = Renderer(heard, size, RenderSettings(shading=shading))
+    commands = CommandList()
+    renderer.draw(scene, camera, commands)
+    readback = renderer.read_display(commands)
+    heard.submit(commands).wait()
+    renderer.close()
+    assert readback.data is not None
+    assert np.ptp(readback.data) > 0
+    names = listener.names
+    # Four integrate the light; the surfaces and the display have others.
+    assert names.count("glLinkProgram") >= 6
+    assert "glLinkProgram" not in names[names.index("glGetProgramiv") :]
 
 
 @pytest.mark.parametrize(("vertex", "fragment", "message"), FAULTS)

@@ -30,6 +30,7 @@ def cubes_of(split: SplitEnvironment) -> tuple[np.ndarray, np.ndarray]:
             irradiance=False,
             radiance=True,
         )
+        maps.fill()
         mirror, source = (
             np.stack(
                 [device.read_texture(cube, face=face) for face in range(6)]
