@@ -90,15 +90,16 @@ def merge_draws(recording: Recording, meshes: MeshTable) -> Batches:
         return Batches(np.zeros(0, INDIRECT), [0], [], [], [], [], {})
     # Words of two columns each: program and bind group, mesh and state.
     words = np.ascontiguousarray(draws).view(np.uint64).reshape(len(draws), -1)
-    new_command = np.zeros(len(draws), np.bool_)
-    new_command[[span.start for span in spans]] = True
+    begins_span = np.zeros(len(draws), np.bool_)
+    begins_span[[span.start for span in spans]] = True
+    new_command = begins_span.copy()
     for word in (1, 2):
         new_command[1:] |= words[1:, word] != words[:-1, word]
     first_draws = np.flatnonzero(new_command)
 
     head = draws[first_draws]
     mesh = meshes.rows[head["mesh"]]
-    new_batch = np.isin(first_draws, [span.start for span in spans])
+    new_batch = begins_span[first_draws]
     for column in (
         head["program"],
         head["bind_group"],

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,7 @@ __all__ = ["ScreenPasses", "Sky"]
 MOST_DISCS = 64
 
 
+@cache
 def _background(discs: int) -> UniformLayout:
     parameters = [
         Parameter("direction_from_clip", ParameterType.MAT4),

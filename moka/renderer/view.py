@@ -21,6 +21,9 @@ __all__ = ["View", "look_through", "turn_matrix"]
 _DEPTH_RATIO = 2.0**64
 # An infinite far plane as a float32.
 _FARTHEST = float(np.finfo(np.float32).max)
+# Of a box the corners: every choice of a lower or an upper end on each axis.
+_AXES = np.arange(3)
+_ENDS = np.arange(8)[:, np.newaxis] >> _AXES & 1
 
 
 class View(Struct, frozen=True):
@@ -77,22 +80,24 @@ class View(Struct, frozen=True):
         ``size``; None where it reaches behind the camera, or beyond what can
         be computed, and may be anywhere.
         """
-        corners = np.ones((8, 4))
-        # Every choice of a lower or an upper end on the three axes.
-        ends = np.arange(8)[:, np.newaxis] >> np.arange(3) & 1
+        clip = self.clip_from_world
         with np.errstate(over="ignore", invalid="ignore"):
-            corners[:, :3] = box[ends, np.arange(3)] - self.position
-            x, y, _, w = self.clip_from_world @ corners.T
-            if not (w > 1e-6 * np.abs(corners[:, :3]).max()).all():
+            corners = box[_ENDS, _AXES] - self.position
+            x, y, _, w = clip[:, :3] @ corners.T + clip[:, 3:]
+            if not (w > 1e-6 * np.abs(corners).max()).all():
                 return None
             places = (np.stack([x, y]) / w * 0.5 + 0.5).T * size
-        if not np.isfinite(places).all():
+        low, high = places.min(axis=0).tolist(), places.max(axis=0).tolist()
+        if not all(map(math.isfinite, (*low, *high))):
             return None
-        low = np.clip(np.floor(places.min(axis=0)) - 1, 0, size)
-        high = np.clip(np.ceil(places.max(axis=0)) + 1, 0, size)
-        left, bottom = low.astype(int).tolist()
-        width, height = (high - low).astype(int).tolist()
-        return left, bottom, width, height
+        (left, right), (bottom, top) = (
+            (
+                min(max(math.floor(first) - 1, 0), side),
+                min(max(math.ceil(last) + 1, 0), side),
+            )
+            for first, last, side in zip(low, high, size, strict=True)
+        )
+        return left, bottom, right - left, top - bottom
 
     def direction_from_clip(self, environment_rotation: float) -> Array:
         """(4, 4): clip (x, y, 0, 1) to a direction of the environment.

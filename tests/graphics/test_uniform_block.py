@@ -1,5 +1,9 @@
 """Parameters land where GLSL's std140 looks for them."""
 
+import math
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -83,6 +87,17 @@ def test_what_float32_cannot_hold_becomes_the_largest_it_can() -> None:
     row = EXAMPLE.pack({"c": (1e300, -np.inf, 1.0)})
     largest = np.finfo(np.float32).max
     assert row.view(np.float32)[4:7].tolist() == [largest, -largest, 1.0]
+
+
+@pytest.mark.parametrize("kind", [float, np.float64, np.float32, np.asarray])
+@pytest.mark.parametrize("value", [0.1, 1e300, -math.inf, math.nan, 1e-60])
+def test_one_number_is_stored_as_many_are(
+    kind: Callable[[float], Any], value: float
+) -> None:
+    with np.errstate(over="ignore"):
+        given = kind(value)
+    row = EXAMPLE.pack({"a": given, "b": (value, value)})
+    assert row["a"].tobytes() == row["b"][0, :1].tobytes()
 
 
 @pytest.mark.parametrize(
