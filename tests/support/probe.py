@@ -107,6 +107,7 @@ class LightingProbe:
                 reflections=reflections,
             ),
         )
+        sources.maps.fill()
         scene = Scene()
         scene.environment = environment
         scene.environment_rotation = rotation
