@@ -99,7 +99,10 @@ class LightSources:
     def update_maps(
         self, environment: Environment | None, needs: MapNeeds
     ) -> bool:
-        """Have the maps that are asked for; whether they are new ones."""
+        """Have the maps that are asked for; whether they are new ones.
+
+        New ones are to be filled before something reads them.
+        """
         request = needs.request(environment)
         if self._made.serves(request, needs.ibl):
             return False
