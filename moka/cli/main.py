@@ -8,7 +8,7 @@ import time
 from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from moka.cli.diagnostics import add_diagnostics, log_lines
 from moka.cli.process import INTERRUPTED, run_process
@@ -45,6 +45,19 @@ INTERNAL_ERROR = 1
 
 class _Parser(argparse.ArgumentParser):
     """Raises OptionError where argparse would print usage and exit."""
+
+    def __init__(self, **options: Any) -> None:
+        # argparse makes a formatter for every option that is added, and each
+        # would ask the terminal for its width: 2 ms, most of them an import.
+        super().__init__(
+            formatter_class=partial(argparse.HelpFormatter, width=80),
+            **options,
+        )
+
+    def format_help(self) -> str:
+        """The help, as wide as the terminal."""
+        self.formatter_class = argparse.HelpFormatter
+        return super().format_help()
 
     def error(self, message: str) -> NoReturn:
         raise OptionError(f"{message} (see {self.prog} --help)")

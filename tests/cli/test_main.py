@@ -1,6 +1,7 @@
 """The command line as a whole: help, versions, unknown words."""
 
 import importlib
+import os
 import subprocess
 import sys
 
@@ -58,6 +59,8 @@ def test_a_command_loads_nothing_of_the_others() -> None:
     for arguments, absent in (
         (["--help"], {"numpy", "moka.cli.render", "moka.cli.doctor"}),
         (["render", "--help"], {"numpy", "moka.cli.doctor", "moka.cli.info"}),
+        # argparse asks for it where it wants to know the terminal's width.
+        (["render", "missing.glb"], {"shutil"}),
     ):
         done = subprocess.run(
             [sys.executable, "-c", code, *arguments],
@@ -90,3 +93,17 @@ def test_a_picture_of_its_own_process_is_not_interrupted_to_collect(
     )
     before, after = map(int, result.stdout.splitlines()[-1].split())
     assert after >= 100 * before if is_own else after == before
+
+
+def test_help_is_as_wide_as_the_terminal() -> None:
+    widths = []
+    for columns in ("50", "100"):
+        result = subprocess.run(
+            [sys.executable, "-m", "moka", "render", "--help"],
+            env={**os.environ, "COLUMNS": columns},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        widths.append(max(map(len, result.stdout.splitlines())))
+    assert widths[0] < 60 < 80 < widths[1] < 100
