@@ -92,3 +92,19 @@ def test_a_headless_png_pays_for_nothing_else(tmp_path: Path) -> None:
     }
     assert "moka.model.nodes" in log
     assert not {name for name in modules if name in log}
+
+
+def test_msgspec_does_without_typing_extensions() -> None:
+    """And whoever wants them later still gets them."""
+    pytest.importorskip("typing_extensions")
+    code = (
+        "import sys\n"
+        "from moka.cli.render import _import_msgspec\n"
+        "_import_msgspec()\n"
+        "assert 'msgspec' in sys.modules\n"
+        "assert 'inspect' not in sys.modules\n"
+        "import typing_extensions\n"
+        "_import_msgspec()\n"
+        "assert sys.modules['typing_extensions'] is typing_extensions"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
