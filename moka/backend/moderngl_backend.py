@@ -228,6 +228,8 @@ class ModernGLBackend:
         self.finish_programs()
         start = time.perf_counter()
         counters = self._execute(recording)
+        if stage != "frame":
+            self._uploaded = counters.bytes_uploaded
         spent = time.perf_counter() - start
         reading = self._reader.seconds
         if reading:

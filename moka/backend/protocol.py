@@ -121,7 +121,10 @@ class Backend(Protocol):
     def execute(
         self, recording: Recording, stage: str = "frame"
     ) -> FrameCounters:
-        """Run a recording; its time counts for ``stage``."""
+        """Run a recording; its time counts for ``stage``.
+
+        What was uploaded counts with the next one that is a frame.
+        """
 
     def read_texture(
         self, handle: Handle, level: int, face: int

@@ -153,6 +153,21 @@ def test_redundant_state_is_skipped_and_counted(
     assert ten[1] > one[1]
 
 
+def test_what_is_uploaded_counts_with_the_next_frame(
+    egl_device: GraphicsDevice,
+) -> None:
+    """Also where light is integrated between the two."""
+    texels = np.zeros((4, 8, 4), np.uint8)
+    egl_device.create_texture(
+        TextureDescriptor(PixelFormat.RGBA8, 8, 4), [texels]
+    )
+    egl_device.submit(CommandList(), stage="environment")
+    counts = [
+        egl_device.submit(CommandList()).wait().bytes_uploaded for _ in range(2)
+    ]
+    assert counts == [texels.nbytes, 0]
+
+
 def test_nothing_leaks_from_one_draw_into_the_next(
     egl_device: GraphicsDevice,
 ) -> None:
