@@ -55,16 +55,21 @@ class FrameTargets:
         size: tuple[int, int],
         settings: RenderSettings,
         visible_samples: int = 0,
+        *,
+        has_edges: bool = True,
     ) -> Targets:
         """Have those for pictures of ``size``, made if others are there.
 
         With ``visible_samples`` a visibility buffer has so many of a pixel.
+        A sky alone has no edges that more than one would smooth.
         """
         samples = min(settings.samples, self._device.info.max_samples)
         if settings.accumulates:
             samples = 1  # Edges are smooth by another point in every frame.
         if visible_samples:
             samples = 1  # The visibility buffer has them.
+        if not has_edges:
+            samples = 1
         wanted = (size, samples, settings.has_float_target)
         if self._targets is None or self._targets.made_for != wanted:
             self.release()

@@ -235,7 +235,12 @@ class Renderer:
         samples = self._visibility_choice.samples(
             self.settings, seen.materials, scene.drawables
         )
-        targets = self._targets.update(self.size, self.settings, samples)
+        targets = self._targets.update(
+            self.size,
+            self.settings,
+            samples,
+            has_edges=len(scene.drawables.primitive) > 0,
+        )
         self._update_maps(seen)
         lights = self._sources.rows(scene, seen.view.position)
         # Frames that are accumulated have theirs in every one of them.

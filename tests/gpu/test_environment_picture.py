@@ -256,3 +256,18 @@ def test_an_environment_that_is_off_is_seen_and_lights_nothing(
     np.testing.assert_allclose(lit[0, 0, :3], 2.0, rtol=1e-3)
     assert lit[8, 8, :3].min() > 0.5
     assert dark[8, 8, :3].max() == 0.0
+
+
+@pytest.mark.parametrize("background", ["environment", (0.2, 0.5, 0.7)])
+def test_a_sky_alone_is_the_same_with_more_samples(
+    egl_device: GraphicsDevice, background: object
+) -> None:
+    sun = Sun((0.0, 0.0, -1.0), (9.0, 8.0, 7.0), 0.05)
+    scene = scene_of([], background=background)
+    scene.environment = Environment(axis_map(), suns=(sun,))
+    one, four = (
+        draw_with_display(egl_device, scene, square_camera(), samples=samples)
+        for samples in (1, 4)
+    )
+    for first, second in zip(one, four, strict=True):
+        assert np.array_equal(first, second)
