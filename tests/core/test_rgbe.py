@@ -54,6 +54,8 @@ def test_what_the_format_cannot_hold() -> None:
             [-1.0, math.nan, -math.inf],
             [1e-40, 0.0, 0.0],
             [math.inf, 1e39, 0.0],
+            # Nearer to the least that there is than to nothing.
+            [0.999 * 2.0**-128, 0.0, 0.0],
         ]
     )
     assert encode_rgbe(colours).tolist() == [
@@ -61,4 +63,17 @@ def test_what_the_format_cannot_hold() -> None:
         [0, 0, 0, 0],
         [0, 0, 0, 0],
         [255, 255, 0, 255],
+        [128, 0, 0, 1],
     ]
+
+
+def test_large_images_are_encoded_as_their_pixels_are() -> None:
+    random = np.random.default_rng(1)
+    exponents = random.uniform(-140, 127, (130, 97, 3))
+    colours = np.exp2(exponents).astype(np.float32)
+    whole = encode_rgbe(colours)
+    assert whole.shape == (130, 97, 4)
+    for row, column in ((0, 0), (84, 44), (84, 45), (129, 96)):
+        alone = encode_rgbe(colours[row, column])
+        assert whole[row, column].tolist() == alone.tolist()
+    assert encode_rgbe(colours[:, ::-1]).tolist() == whole[:, ::-1].tolist()
