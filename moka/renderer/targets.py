@@ -5,6 +5,8 @@ averages its samples, in linear radiance, and tone maps once; who wants the
 radiance itself has it resolved into a target that exists only then.
 """
 
+from functools import cached_property
+
 from moka.commands.descriptors import (
     Attachment,
     FramebufferDescriptor,
@@ -21,9 +23,11 @@ class Targets:
     """The framebuffers of one size (width, height) and sample count.
 
     ``scene`` is drawn into, ``scene_texture`` and ``depth_texture`` are what
-    it holds, ``display`` gets tone mapped bytes. Half floats hold radiance up
-    to 65 504, which the display never needs; with ``float_output`` it is
-    float32, for pictures whose values leave as numbers.
+    it holds, ``display`` gets tone mapped bytes, ``resolved`` one radiance
+    per pixel. Half floats hold radiance up to 65 504, which the display never
+    needs; with ``float_output`` it is float32, for pictures whose values
+    leave as numbers. Each is made when it is first asked for: by then images
+    are decoded, and it takes the memory that they needed.
     """
 
     def __init__(
@@ -37,14 +41,9 @@ class Targets:
         self.made_for = (size, samples, float_output)
         self._device = device
         self._resources: list[Handle] = []
-        self._resolved: Handle | None = None
         self._format = (
             PixelFormat.RGBA32F if float_output else PixelFormat.RGBA16F
         )
-        self.scene_texture = self._texture(self._format, samples)
-        self.depth_texture = self._texture(PixelFormat.DEPTH32F, samples)
-        self.scene = self._framebuffer(self.scene_texture, self.depth_texture)
-        self.display = self._framebuffer(self._texture(PixelFormat.RGBA8))
 
     @property
     def size(self) -> tuple[int, int]:
@@ -56,12 +55,30 @@ class Targets:
         """Samples of a pixel in ``scene``."""
         return self.made_for[1]
 
-    @property
+    @cached_property
+    def scene_texture(self) -> Handle:
+        """Linear radiance, premultiplied by coverage."""
+        return self._texture(self._format, self.samples)
+
+    @cached_property
+    def depth_texture(self) -> Handle:
+        """Depth of the same samples."""
+        return self._texture(PixelFormat.DEPTH32F, self.samples)
+
+    @cached_property
+    def scene(self) -> Handle:
+        """The framebuffer of both."""
+        return self._framebuffer(self.scene_texture, self.depth_texture)
+
+    @cached_property
+    def display(self) -> Handle:
+        """A framebuffer for bytes."""
+        return self._framebuffer(self._texture(PixelFormat.RGBA8))
+
+    @cached_property
     def resolved(self) -> Handle:
-        """A framebuffer for one radiance per pixel; made when asked for."""
-        if self._resolved is None:
-            self._resolved = self._framebuffer(self._texture(self._format))
-        return self._resolved
+        """A framebuffer for one radiance per pixel."""
+        return self._framebuffer(self._texture(self._format))
 
     def destroy(self) -> None:
         """Destroy all of it."""

@@ -8,6 +8,7 @@ each sample sees (Burns and Hunt 2013, "The Visibility Buffer"), and a second
 one shades that, with the same text of a shader as forward shading.
 """
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -78,29 +79,53 @@ class VisibilityBuffer:
         self.made_for = targets, samples
         self._device = device
         self._passes = passes
+        self._targets = targets
         self._samples = samples
         self._resources: list[Handle] = []
-        size = targets.size
-        self._triangles = self._texture(PixelFormat.R32UI, size, samples)
-        # The targets have one depth for each pixel: that of its one sample,
-        # or, of several, a mark where any of them has something.
-        depth = targets.depth_texture
-        self._mask: Handle | None = None
-        if samples > 1:
-            self._mask = self._framebuffer((), depth)
+        if self._has_mask:
             self._mask_program()  # Compiles while images decode.
-            self._mask_group = self._keep(
-                device.create_bind_group(
-                    BindGroupDescriptor((self._triangle_binding,))
-                )
-            )
-            depth = self._texture(PixelFormat.DEPTH32F, size, samples)
-        self._seen = self._framebuffer((self._triangles,), depth)
-        self._shaded = targets.scene
         self._instances: Handle | None = None
         self._instance_capacity = 0
         self._group: Handle | None = None
         self._group_of: object = None
+
+    @property
+    def _has_mask(self) -> bool:
+        """Whether pixels are marked where any of their samples has something.
+
+        The targets have one depth for each pixel: that of its one sample, or
+        the mark.
+        """
+        return self._samples > 1
+
+    @cached_property
+    def _triangles(self) -> Handle:
+        """The triangle that each sample sees."""
+        return self._texture(PixelFormat.R32UI)
+
+    @cached_property
+    def _seen(self) -> Handle:
+        """A framebuffer for them."""
+        depth = (
+            self._texture(PixelFormat.DEPTH32F)
+            if self._has_mask
+            else self._targets.depth_texture
+        )
+        return self._framebuffer((self._triangles,), depth)
+
+    @cached_property
+    def _mask(self) -> Handle:
+        """A framebuffer for the marks."""
+        return self._framebuffer((), self._targets.depth_texture)
+
+    @cached_property
+    def _mask_group(self) -> Handle:
+        """What the program that sets them binds."""
+        return self._keep(
+            self._device.create_bind_group(
+                BindGroupDescriptor((self._triangle_binding,))
+            )
+        )
 
     def destroy(self) -> None:
         """Free everything."""
@@ -138,7 +163,7 @@ class VisibilityBuffer:
         """
         buffer = commands.command_buffer(key)
         if not len(instances):
-            buffer.bind_framebuffer(self._shaded)
+            buffer.bind_framebuffer(self._targets.scene)
             buffer.scissor(area)
             buffer.clear(clear)
             return
@@ -146,7 +171,7 @@ class VisibilityBuffer:
         group = self._bind_group(prepared, len(texels))
         assert self._instances is not None
         buffer.fill_texture(self._instances, texels)
-        if self._mask is not None:
+        if self._has_mask:
             buffer.bind_framebuffer(self._mask)
             buffer.scissor(area)
             buffer.clear(None, 0.0)
@@ -158,7 +183,7 @@ class VisibilityBuffer:
                 _MARK,
             )
         assert prepared.visible_surface is not None
-        buffer.bind_framebuffer(self._shaded)
+        buffer.bind_framebuffer(self._targets.scene)
         buffer.scissor(area)
         buffer.clear(clear)
         buffer.scissor(within)
@@ -220,13 +245,14 @@ class VisibilityBuffer:
     def _triangle_binding(self) -> TextureBinding:
         return TextureBinding("visible_triangles", self._triangles, _POINTS)
 
-    def _texture(
-        self, pixels: PixelFormat, size: tuple[int, int], samples: int
-    ) -> Handle:
+    def _texture(self, pixels: PixelFormat) -> Handle:
         return self._keep(
             self._device.create_texture(
                 TextureDescriptor(
-                    pixels, *size, samples=samples, label="visibility"
+                    pixels,
+                    *self._targets.size,
+                    samples=self._samples,
+                    label="visibility",
                 )
             )
         )
