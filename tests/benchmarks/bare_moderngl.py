@@ -836,16 +836,6 @@ def main() -> None:
         resolve = ctx.vertex_array(
             ctx.program(FULL_SCREEN, resolve_fragment), []
         )
-    with stage("targets"):
-        radiance = ctx.texture(size, 4, samples=samples, dtype="f2")
-        target = ctx.framebuffer(
-            [radiance], ctx.depth_renderbuffer(size, samples=samples)
-        )
-        linear = [path for path in outputs if path.suffix == ".exr"]
-        final = ctx.framebuffer(
-            [ctx.texture(size, 4)]
-            + [ctx.texture(size, 4, dtype="f4")] * bool(linear)
-        )
     with stage("geometry"):
         import numpy as np
 
@@ -878,6 +868,16 @@ def main() -> None:
             del done, job, levels  # their memory serves the next texture
     with stage("environment"):
         complete()
+    with stage("targets"):  # in the memory that images needed
+        radiance = ctx.texture(size, 4, samples=samples, dtype="f2")
+        target = ctx.framebuffer(
+            [radiance], ctx.depth_renderbuffer(size, samples=samples)
+        )
+        linear = [path for path in outputs if path.suffix == ".exr"]
+        final = ctx.framebuffer(
+            [ctx.texture(size, 4)]
+            + [ctx.texture(size, 4, dtype="f4")] * bool(linear)
+        )
     radiance.use(9)
     ctx.depth_func = "<="
 
