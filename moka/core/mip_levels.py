@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.core.colour import decode_srgb, encode_srgb8
+from moka.core.shared_work import Run, run_here
 
 __all__ = ["halve_exactly", "reduce_levels"]
 
@@ -33,6 +34,7 @@ def reduce_levels(
     opaque: bool = False,
     finish: Finish | None = None,
     finest: int = 0,
+    run: Run = run_here,
 ) -> list[NDArray[Any]]:
     """The chain of mip levels, from ``texels`` itself down to 1 x 1.
 
@@ -44,7 +46,8 @@ def reduce_levels(
     a last channel of two or four always as it is; ``opaque`` says that it is
     white throughout. ``finest`` is the first level wanted; those before it are
     left out. ``finish`` is called with the 16-bit linear values of each level
-    and its codes, which it may change.
+    and its codes, which it may change. ``run`` does the larger levels in
+    blocks.
     """
     if srgb and texels.dtype != np.uint8:
         raise ValueError("sRGB-encoded texels have 8 bits")
@@ -52,14 +55,16 @@ def reduce_levels(
     linear: NDArray[np.uint16] | None = None
     for level in range(1, max(texels.shape[:2]).bit_length()):
         if linear is not None:
-            linear = _halve(linear, texels.dtype)
+            linear = _halve(linear, texels.dtype, run)
         elif _has_lanes(texels) and texels.dtype == np.uint8:
-            linear = _decode_and_halve(texels, srgb=srgb, opaque=opaque)
+            linear = _decode_and_halve(
+                texels, srgb=srgb, opaque=opaque, run=run
+            )
         else:
-            linear = _halve(_decode(texels, srgb), texels.dtype)
+            linear = _halve(_decode(texels, srgb), texels.dtype, run)
         if level < finest and finish is None:
             continue
-        codes = _encode(linear, texels.dtype, srgb)
+        codes = _encode(linear, texels.dtype, srgb, run)
         if finish is not None:
             finish(linear, codes)
         if level >= finest:
@@ -99,7 +104,7 @@ def _decode(texels: NDArray[Any], srgb: bool) -> NDArray[np.uint16]:
 
 
 def _decode_and_halve(
-    texels: NDArray[np.uint8], *, srgb: bool, opaque: bool
+    texels: NDArray[np.uint8], *, srgb: bool, opaque: bool, run: Run
 ) -> NDArray[np.uint16]:
     """The first level of 8-bit RGBA of even sizes, as 16-bit values.
 
@@ -111,14 +116,15 @@ def _decode_and_halve(
     texels = np.ascontiguousarray(texels)
     linear = np.empty((height // 2, width // 2, 4), np.uint16)
     step = max(1, _BLOCK // (2 * width))
-    for start in range(0, height // 2, step):
+
+    def block(start: int) -> None:
         rows = texels[2 * start : 2 * (start + step)]
         target = linear[start : start + step]
         if not srgb:
             sums = np.add(rows[0::2], rows[1::2], dtype=np.uint16)
             sums <<= 6
             _add_columns(sums, target)
-            continue
+            return
         pairs = rows.reshape(len(rows), -1).view(np.uint16)
         decoded = _quarters().take(pairs, mode="clip").view(np.uint64)
         _add_columns(decoded[0::2] + decoded[1::2], target)
@@ -128,6 +134,8 @@ def _decode_and_halve(
             alpha = np.add(rows[0::2, :, 3], rows[1::2, :, 3], dtype=np.uint16)
             alpha <<= 6
             np.add(alpha[:, 0::2], alpha[:, 1::2], out=target[:, :, 3])
+
+    run(block, range(0, height // 2, step))
     return linear
 
 
@@ -152,7 +160,7 @@ def _quarters() -> NDArray[np.uint32]:
 
 
 def _halve(
-    linear: NDArray[np.uint16], dtype: np.dtype[Any]
+    linear: NDArray[np.uint16], dtype: np.dtype[Any], run: Run
 ) -> NDArray[np.uint16]:
     """The next level of 16-bit linear values of any size.
 
@@ -167,7 +175,8 @@ def _halve(
         (height // 2, width // 2, channels), np.uint16
     )
     step = max(1, _BLOCK // (width * channels))
-    for start in range(0, height // 2, step):
+
+    def block(start: int) -> None:
         rows = linear[2 * start : 2 * (start + step)]
         if dtype == np.uint8 and channels == 4:
             # Half of the rows rounded up, and half of them down.
@@ -176,13 +185,15 @@ def _halve(
             lower >>= 2
             upper += lower
             _add_columns(upper, halved[start : start + step])
-            continue
+            return
         sums = np.add(rows[0::2], rows[1::2], dtype=np.uint32)
         for channel in range(channels):
             total = sums[:, 0::2, channel] + sums[:, 1::2, channel]
             total += 2
             total >>= 2
             halved[start : start + step, :, channel] = total
+
+    run(block, range(0, height // 2, step))
     return halved
 
 
@@ -210,14 +221,15 @@ def _halve_rows(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _encode(
-    linear: NDArray[np.uint16], dtype: np.dtype[Any], srgb: bool
+    linear: NDArray[np.uint16], dtype: np.dtype[Any], srgb: bool, run: Run
 ) -> NDArray[Any]:
     if dtype == np.uint16:
         return linear.copy()
     codes = np.empty(linear.shape, np.uint8)
     table = _encoding_table() if srgb else None
     step = max(1, _BLOCK // linear[0].size)
-    for start in range(0, len(linear), step):
+
+    def block(start: int) -> None:
         rows, target = linear[start : start + step], codes[start : start + step]
         if table is not None:
             # Checking indices would make a copy of them.
@@ -225,6 +237,8 @@ def _encode(
         if table is None or _has_alpha(linear):
             plain = slice(-1 if srgb else None, None)
             target[:, :, plain] = (rows[:, :, plain] + np.uint16(128)) >> 8
+
+    run(block, range(0, len(linear), step))
     return codes
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from moka.commands.descriptors import PixelFormat
+from moka.core.shared_work import Run
 from moka.renderer.texture_request import Graft, TextureRequest
 
 if TYPE_CHECKING:
@@ -73,8 +74,12 @@ def make_levels(
     *,
     opaque: bool,
     finest: int,
+    run: Run,
 ) -> list[NDArray[Any]]:
-    """The levels of arranged texels from ``finest`` on; one if asked for so."""
+    """The levels of arranged texels from ``finest`` on; one if asked for so.
+
+    ``run`` does blocks of them.
+    """
     from moka.core.mip_levels import reduce_levels
 
     if not request.has_levels and not finest:
@@ -94,6 +99,7 @@ def make_levels(
             opaque=opaque or (request.is_colour and not request.graft),
             finish=_finish(request, texels),
             finest=finest,
+            run=run,
         )
     return levels if request.has_levels else levels[:1]
 

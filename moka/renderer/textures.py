@@ -19,6 +19,7 @@ from moka.commands.handles import Handle
 from moka.core.encoded_image import EncodedImage
 from moka.core.image_header import image_media_type
 from moka.core.log import get_logger
+from moka.core.shared_work import shared_with
 from moka.core.statistics import Statistics
 from moka.graphics.device import GraphicsDevice
 from moka.renderer.sampled_levels import SampledLevels
@@ -130,7 +131,11 @@ class TexturePool:
                     request, (width, height), decoders[0].image.where, read
                 )
                 levels = make_levels(
-                    request, texels, opaque=opaque, finest=finest
+                    request,
+                    texels,
+                    opaque=opaque,
+                    finest=finest,
+                    run=shared_with(self._workers),
                 )
         height, width = levels[0].shape[:2]
         return self._device.create_texture(

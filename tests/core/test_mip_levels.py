@@ -1,5 +1,9 @@
 """Mip levels against area averages of the texels in float64."""
 
+import threading
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,6 +11,7 @@ from hypothesis import strategies as st
 
 from moka.core.colour import decode_srgb, encode_srgb
 from moka.core.mip_levels import reduce_levels
+from moka.core.shared_work import shared_with
 
 
 def noise(*shape: int, dtype: type = np.uint8) -> np.ndarray:
@@ -116,6 +121,32 @@ def test_levels_from_the_finest_wanted_on(shape: tuple[int, ...]) -> None:
         assert len(part) == len(whole) - finest
         for level, same in zip(part, whole[finest:], strict=True):
             np.testing.assert_array_equal(level, same)
+
+
+@pytest.mark.parametrize("srgb", [False, True])
+@pytest.mark.parametrize("channels", [3, 4])
+def test_levels_of_several_threads_are_the_same(
+    channels: int, srgb: bool
+) -> None:
+    texels = noise(1024, 2048, channels)
+    threads = set()
+
+    with ThreadPoolExecutor(2) as pool:
+        share = shared_with(pool)
+
+        def run(function: Callable[[int], None], pieces: Iterable[int]) -> None:
+            def piece(number: int) -> None:
+                threads.add(threading.current_thread().name)
+                function(number)
+
+            share(piece, pieces)
+
+        shared = reduce_levels(texels, srgb=srgb, run=run)
+    assert len(threads) > 1
+    for level, same in zip(
+        shared, reduce_levels(texels, srgb=srgb), strict=True
+    ):
+        np.testing.assert_array_equal(level, same)
 
 
 @pytest.mark.parametrize("srgb", [False, True])
