@@ -260,7 +260,9 @@ class Renderer:
         if not self.settings.accumulates or not self._progressive.is_finished:
             self._draw_scene(seen, lights, targets, commands)
         self._draw_display(scene, display, targets, commands)
-        self._count(seen, prepared.permutation_count)
+        self._count(
+            seen, prepared.permutation_count, samples or targets.samples
+        )
 
     def read_display(self, commands: CommandList) -> Readback:
         """Read the tone mapped bytes (H, W, 4), bottom row first.
@@ -459,7 +461,7 @@ class Renderer:
             framebuffer, (0, 0, *self.size), dtype=dtype, key=SortKey(PASS_READ)
         )
 
-    def _count(self, seen: FrameScene, permutations: int) -> None:
+    def _count(self, seen: FrameScene, permutations: int, samples: int) -> None:
         objects, visible = seen.scene.drawables.total, len(seen.visible)
         for name, value in (
             ("objects", objects),
@@ -467,5 +469,6 @@ class Renderer:
             ("culled", objects - visible),
             ("programs", len(self._pools.programs)),
             ("permutations", permutations),
+            ("samples", samples),
         ):
             self.statistics.set_count(name, value)

@@ -46,6 +46,7 @@ def test_edges_have_as_many_samples_as_asked_for(samples: int) -> None:
             device.submit(commands).wait()
             counts = {each.samples for each in textures(backend)}
             assert max(counts) == expected
+            assert renderer.statistics.counts["samples"] == expected
             scene.add(model_of([(cube(), None, np.eye(4))]))
         renderer.close()
 
