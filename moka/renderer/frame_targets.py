@@ -36,6 +36,7 @@ class FrameTargets:
         self._passes = passes
         self._readers = readers
         self._targets: Targets | None = None
+        self._are_reused = False
         self.visibility: VisibilityBuffer | None = None
 
     @property
@@ -49,6 +50,18 @@ class FrameTargets:
         if self._targets is None:
             raise DeviceError("renderer: nothing has been drawn to read")
         return self._targets
+
+    @property
+    def marked_samples(self) -> int:
+        """How many samples of a pixel the depth of the targets speaks of.
+
+        It is there where any of them has something. 0 where it says nothing
+        of the kind, and for the first frame: programs that make use of it
+        cost more to compile than one picture gains.
+        """
+        if self.visibility is None or not self._are_reused:
+            return 0
+        return self.visibility.samples
 
     def update(
         self,
@@ -71,8 +84,10 @@ class FrameTargets:
         if not has_edges:
             samples = 1
         wanted = (size, samples, settings.has_float_target)
+        self._are_reused = self._targets is not None
         if self._targets is None or self._targets.made_for != wanted:
             self.release()
+            self._are_reused = False
             self._targets = Targets(
                 self._device,
                 size,

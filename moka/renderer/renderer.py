@@ -46,7 +46,7 @@ from moka.renderer.material_pool import MaterialPool
 from moka.renderer.progressive import Progressive
 from moka.renderer.scene_pass import ScenePass
 from moka.renderer.scene_preparation import ScenePreparation
-from moka.renderer.screen_passes import ScreenPasses, Sky
+from moka.renderer.screen_passes import ScreenPart, ScreenPasses, Sky
 from moka.renderer.settings import RenderSettings
 from moka.renderer.shared_pools import SharedPools
 from moka.renderer.sky_map import SkyMap
@@ -132,6 +132,9 @@ class Renderer:
         self._visibility_choice = VisibilityChoice(device, self._pools.geometry)
         # What the scene of the last frame has behind it, not drawn there.
         self._sky_behind: Sky | None = None
+        # Of how many samples its depth alone says where something is: there
+        # its radiance holds nothing else.
+        self._marked = 0
         self._scene = ScenePreparation(
             device, self._frame, self._sources, self._pools
         )
@@ -247,7 +250,10 @@ class Renderer:
         self._sky_behind = (
             None if self.settings.accumulates else self._sky(seen)
         )
-        display = self._display_program(scene, targets)
+        # A window has no such depth.
+        has_marks = self._sky_behind is not None and not self._to_window
+        self._marked = self._targets.marked_samples if has_marks else 0
+        display = self._display_parts(scene, targets)
         prepared = self._scene.update(seen, self.settings, lights, samples)
         if self.settings.accumulates:
             self._progressive.begin(
@@ -282,7 +288,10 @@ class Renderer:
         if targets.samples == 1 and self._sky_behind is None:
             return self._read(commands, targets.scene, "f4")
         self._screen.resolve(
-            commands.command_buffer(key), targets, self._sky_behind
+            commands.command_buffer(key),
+            targets,
+            self._sky_behind,
+            self._marked,
         )
         return self._read(commands, targets.resolved, "f4")
 
@@ -392,7 +401,13 @@ class Renderer:
             jitter = self._progressive.jitter
             seen = replace(seen, view=seen.view.jittered(jitter, self.size))
         self._scene_pass.draw(
-            seen, settings, self.size, lights, self.area, commands
+            seen,
+            settings,
+            self.size,
+            lights,
+            self.area,
+            commands,
+            clears=not self._marked,
         )
         if settings.accumulates:
             sky = self._sky(seen)
@@ -411,10 +426,13 @@ class Renderer:
             float_target=self.settings.has_float_target,
         )
 
-    def _display_program(self, scene: Scene, targets: Targets) -> Handle:
-        return self._screen.display_program(
+    def _display_parts(
+        self, scene: Scene, targets: Targets
+    ) -> tuple[ScreenPart, ...]:
+        return self._screen.display_parts(
             targets,
             self._sky_behind,
+            self._marked,
             tone_map="stops" if self.shows_stops else self.settings.tone_map,
             has_gamma=self._gamma is not None,
             has_background=not isinstance(scene.background, str),
@@ -427,7 +445,7 @@ class Renderer:
     def _draw_display(
         self,
         scene: Scene,
-        program: Handle,
+        parts: tuple[ScreenPart, ...],
         targets: Targets,
         commands: CommandList,
     ) -> None:
@@ -435,7 +453,7 @@ class Renderer:
         self._screen.draw_display(
             commands,
             SortKey(PASS_DISPLAY),
-            program,
+            parts,
             targets,
             self._sky_behind,
             exposure=self.settings.exposure,

@@ -64,11 +64,15 @@ class ScenePass:
         lights: NDArray[np.void],
         area: Rectangle | None,
         commands: CommandList,
+        *,
+        clears: bool,
     ) -> None:
         """Draw what is ``seen`` and prepared into the current targets.
 
         ``lights`` are the rows of what shines. Only ``area``, or the tiles
-        that reference lighting is still at, gets anything.
+        that reference lighting is still at, gets anything. Unless it
+        ``clears``, radiance is left as it was where the depth that a
+        visibility buffer leaves says that nothing is.
         """
         preparation, scene = self._preparation, seen.scene
         prepared = preparation.prepared
@@ -106,7 +110,7 @@ class ScenePass:
                 SortKey(PASS_SCENE, LAYER_BACKGROUND),
                 prepared,
                 instances,
-                clear,
+                clear if clears else None,
                 area,
                 self._reach(seen, size, area),
             )

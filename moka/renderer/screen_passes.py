@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import replace
 
 from moka.commands.command_buffer import CommandBuffer
@@ -34,7 +35,7 @@ from moka.lighting.environment_maps import CUBE_SAMPLER, MAP_SAMPLER
 from moka.renderer.targets import Targets
 from moka.renderer.view import View
 
-__all__ = ["ScreenPasses", "Sky"]
+__all__ = ["ScreenPart", "ScreenPasses", "Sky"]
 
 # Discs of suns that a sky shows; a map may show any number.
 MOST_DISCS = 64
@@ -61,6 +62,24 @@ _TONE_MAP = UniformLayout(
         Parameter("background_colour", ParameterType.VEC4),
     ),
 )
+
+# Of a depth buffer that is reversed, by a triangle at its far plane, 0.
+_WHERE_NOTHING_IS = replace(
+    FULLSCREEN, depth_test=CompareFunction.GREATER_EQUAL
+)
+_WHERE_SOMETHING_IS = replace(FULLSCREEN, depth_test=CompareFunction.LESS)
+
+
+class ScreenPart(Struct, frozen=True):
+    """The pixels of a picture that ``state`` lets through.
+
+    They show the scene, the sky, or one behind the other.
+    """
+
+    program: Handle
+    state: RasterState
+    has_scene: bool
+    has_sky: bool
 
 
 class Sky:
@@ -181,48 +200,53 @@ class ScreenPasses:
         )
 
     def resolve(
-        self, buffer: CommandBuffer, targets: Targets, sky: Sky | None
+        self,
+        buffer: CommandBuffer,
+        targets: Targets,
+        sky: Sky | None,
+        marked: int,
     ) -> None:
         """Write one radiance a pixel into ``targets.resolved``.
 
-        ``sky`` is what lies behind the scene and has not been drawn there.
+        ``sky`` is what lies behind the scene and has not been drawn there,
+        ``marked`` as in :meth:`display_parts`.
         """
-        textures = self._scene(buffer, targets, sky)
-        buffer.bind_framebuffer(targets.resolved)
-        buffer.draw(
-            self._program("resolve.frag", _scene_defines(targets, sky)),
-            self._passes.triangle,
-            self._group(BindGroupDescriptor(textures, (self._sky_block,))),
-            FULLSCREEN,
+        parts = self._parts("resolve.frag", {}, targets, sky, marked)
+        buffer.bind_framebuffer(
+            targets.marked_resolved if len(parts) > 1 else targets.resolved
         )
+        self._draw(buffer, parts, targets, sky)
 
-    def display_program(
+    def display_parts(
         self,
         targets: Targets,
         sky: Sky | None,
+        marked: int,
         *,
         tone_map: str,
         has_gamma: bool,
         has_background: bool,
-    ) -> Handle:
-        """The program of :meth:`draw_display`; ``sky`` is as there.
+    ) -> tuple[ScreenPart, ...]:
+        """What :meth:`draw_display` draws; ``sky`` is as there.
 
         Apart from it, to be compiled while something else is waited for.
+        Where ``marked`` is not 0, the depth of the targets says in which
+        pixels any of so many samples has something, which is opaque. Then
+        the others show the sky alone, whatever the targets hold.
         """
-        defines = _scene_defines(targets, sky)
-        defines["MOKA_DISPLAY"] = 1
+        defines: dict[str, str | int] = {"MOKA_DISPLAY": 1}
         defines[f"MOKA_TONE_MAP_{tone_map.upper()}"] = 1
         if has_background:
             defines["MOKA_BACKGROUND_COLOUR"] = 1
         if has_gamma:
             defines["MOKA_ENCODE_GAMMA"] = 1
-        return self._program("tone_map.frag", defines)
+        return self._parts("tone_map.frag", defines, targets, sky, marked)
 
     def draw_display(
         self,
         commands: CommandList,
         key: SortKey,
-        program: Handle,
+        parts: Sequence[ScreenPart],
         targets: Targets,
         sky: Sky | None,
         *,
@@ -232,7 +256,7 @@ class ScreenPasses:
         window: tuple[int, int] | None,
         area: tuple[int, int, int, int] | None = None,
     ) -> None:
-        """Average the samples, expose, tone map and encode by ``program``.
+        """Average the samples, expose, tone map and encode by ``parts``.
 
         ``gamma`` encodes by a power, None as sRGB.
 
@@ -249,32 +273,66 @@ class ScreenPasses:
         )
         buffer = commands.command_buffer(key)
         buffer.fill_buffer(self._tone_map, values)
-        textures = self._scene(buffer, targets, sky)
-        blocks = (self._sky_block, UniformBinding("ToneMap", self._tone_map))
-        if window is None:
-            buffer.bind_framebuffer(targets.display)
-        else:
+        if window is not None:
             buffer.bind_framebuffer(None)
             buffer.viewport(0, 0, *window)
+        else:
+            buffer.bind_framebuffer(
+                targets.marked_display if len(parts) > 1 else targets.display
+            )
         buffer.scissor(area)
-        buffer.draw(
-            program,
-            self._passes.triangle,
-            self._group(BindGroupDescriptor(textures, blocks)),
-            FULLSCREEN,
+        block = UniformBinding("ToneMap", self._tone_map)
+        self._draw(buffer, parts, targets, sky, block)
+
+    def _parts(
+        self,
+        fragment: str,
+        defines: dict[str, str | int],
+        targets: Targets,
+        sky: Sky | None,
+        marked: int,
+    ) -> tuple[ScreenPart, ...]:
+        def part(
+            state: RasterState, scene: Targets | None, sky: Sky | None
+        ) -> ScreenPart:
+            return ScreenPart(
+                self._program(fragment, defines | _scene_defines(scene, sky)),
+                state,
+                has_scene=scene is not None,
+                has_sky=sky is not None,
+            )
+
+        if not marked or sky is None:
+            return (part(FULLSCREEN, targets, sky),)
+        return (
+            part(_WHERE_NOTHING_IS, None, sky),
+            # One sample covers all of its pixel.
+            part(_WHERE_SOMETHING_IS, targets, sky if marked > 1 else None),
         )
 
-    def _scene(
-        self, buffer: CommandBuffer, targets: Targets, sky: Sky | None
-    ) -> tuple[TextureBinding, ...]:
-        """What scene_radiance.glsl reads: textures, and the sky's block."""
-        scene = TextureBinding(
-            "radiance_map", targets.scene_texture, CUBE_SAMPLER
-        )
-        if sky is None:
-            return (scene,)
-        buffer.fill_buffer(self._background, sky.block)
-        return scene, sky.binding
+    def _draw(
+        self,
+        buffer: CommandBuffer,
+        parts: Sequence[ScreenPart],
+        targets: Targets,
+        sky: Sky | None,
+        *blocks: UniformBinding,
+    ) -> None:
+        if sky is not None:
+            buffer.fill_buffer(self._background, sky.block)
+        for part in parts:
+            textures = _textures(
+                targets if part.has_scene else None,
+                sky if part.has_sky else None,
+            )
+            buffer.draw(
+                part.program,
+                self._passes.triangle,
+                self._group(
+                    BindGroupDescriptor(textures, (self._sky_block, *blocks))
+                ),
+                part.state,
+            )
 
     def _program(self, fragment: str, defines: dict[str, str | int]) -> Handle:
         return self._passes.program(fragment, defines, vertex="screen.vert")
@@ -297,11 +355,29 @@ class ScreenPasses:
         )
 
 
-def _scene_defines(targets: Targets, sky: Sky | None) -> dict[str, str | int]:
+def _scene_defines(
+    scene: Targets | None, sky: Sky | None
+) -> dict[str, str | int]:
     """The defines of scene_radiance.glsl."""
     defines: dict[str, str | int] = {}
-    if targets.samples > 1:
-        defines["MOKA_SAMPLES"] = targets.samples
+    if scene is None:
+        defines["MOKA_SKY_ALONE"] = 1
+    elif scene.samples > 1:
+        defines["MOKA_SAMPLES"] = scene.samples
     if sky is not None:
         defines |= sky.defines
     return defines
+
+
+def _textures(
+    scene: Targets | None, sky: Sky | None
+) -> tuple[TextureBinding, ...]:
+    """The textures that scene_radiance.glsl reads."""
+    textures = []
+    if scene is not None:
+        textures.append(
+            TextureBinding("radiance_map", scene.scene_texture, CUBE_SAMPLER)
+        )
+    if sky is not None:
+        textures.append(sky.binding)
+    return tuple(textures)

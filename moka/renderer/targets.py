@@ -73,12 +73,30 @@ class Targets:
     @cached_property
     def display(self) -> Handle:
         """A framebuffer for bytes."""
-        return self._framebuffer(self._texture(PixelFormat.RGBA8))
+        return self._framebuffer(self._display_texture)
+
+    @cached_property
+    def marked_display(self) -> Handle:
+        """The same with the depth of ``scene``, which has one sample."""
+        return self._framebuffer(self._display_texture, self.depth_texture)
+
+    @cached_property
+    def _display_texture(self) -> Handle:
+        return self._texture(PixelFormat.RGBA8)
 
     @cached_property
     def resolved(self) -> Handle:
         """A framebuffer for one radiance per pixel."""
-        return self._framebuffer(self._texture(self._format))
+        return self._framebuffer(self._resolved_texture)
+
+    @cached_property
+    def marked_resolved(self) -> Handle:
+        """The same with the depth of ``scene``, which has one sample."""
+        return self._framebuffer(self._resolved_texture, self.depth_texture)
+
+    @cached_property
+    def _resolved_texture(self) -> Handle:
+        return self._texture(self._format)
 
     def destroy(self) -> None:
         """Destroy all of it."""

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from moka.commands.command_buffer import CommandBuffer
 from moka.commands.command_list import CommandList
@@ -53,9 +54,10 @@ _WHERE_SOMETHING_IS = RasterState(
     cull=CullMode.NONE,
     depth_test=CompareFunction.LESS,
     depth_write=False,
-    # Over black where the environment should be and is not.
-    blend=BlendState.PREMULTIPLIED,
 )
+# Over what the target is cleared to: black where the environment should be
+# and is not.
+_OVER_THE_REST = replace(_WHERE_SOMETHING_IS, blend=BlendState.PREMULTIPLIED)
 _MARK = RasterState(
     cull=CullMode.NONE, depth_test=CompareFunction.ALWAYS, colour_write=False
 )
@@ -66,7 +68,8 @@ class VisibilityBuffer:
     """What is seen of a scene by the samples of a picture, and its shading.
 
     Made for ``targets``, which get the radiance of pixels; of each, as many
-    ``samples`` are looked at.
+    ``samples`` are looked at. Their depth is there where any of these has
+    something.
     """
 
     def __init__(
@@ -80,7 +83,7 @@ class VisibilityBuffer:
         self._device = device
         self._passes = passes
         self._targets = targets
-        self._samples = samples
+        self.samples = samples
         self._resources: list[Handle] = []
         if self._has_mask:
             self._mask_program()  # Compiles while images decode.
@@ -96,7 +99,7 @@ class VisibilityBuffer:
         The targets have one depth for each pixel: that of its one sample, or
         the mark.
         """
-        return self._samples > 1
+        return self.samples > 1
 
     @cached_property
     def _triangles(self) -> Handle:
@@ -152,51 +155,51 @@ class VisibilityBuffer:
         key: SortKey,
         prepared: "PreparedScene",
         instances: Instances,
-        clear: tuple[float, float, float, float],
+        clear: tuple[float, float, float, float] | None,
         area: tuple[int, int, int, int] | None,
         within: tuple[int, int, int, int] | None,
     ) -> None:
         """Shade what is seen of the ``instances`` that have been drawn.
 
-        In ``area`` the target is cleared; they touch nothing but pixels
-        ``within``.
+        In ``area`` the target is cleared, unless ``clear`` is None; they
+        touch nothing but pixels ``within``.
         """
         buffer = commands.command_buffer(key)
-        if not len(instances):
-            buffer.bind_framebuffer(self._targets.scene)
-            buffer.scissor(area)
-            buffer.clear(clear)
-            return
-        texels = instances.view(np.uint32).reshape(-1, 4)
-        group = self._bind_group(prepared, len(texels))
-        assert self._instances is not None
-        buffer.fill_texture(self._instances, texels)
+        group = None
+        if len(instances):
+            texels = instances.view(np.uint32).reshape(-1, 4)
+            group = self._bind_group(prepared, len(texels))
+            assert self._instances is not None
+            buffer.fill_texture(self._instances, texels)
         if self._has_mask:
             buffer.bind_framebuffer(self._mask)
             buffer.scissor(area)
             buffer.clear(None, 0.0)
+            if group is not None:
+                buffer.scissor(within)
+                buffer.draw(
+                    self._mask_program(),
+                    self._passes.triangle,
+                    self._mask_group,
+                    _MARK,
+                )
+        buffer.bind_framebuffer(self._targets.scene)
+        if clear is not None:
+            buffer.scissor(area)
+            buffer.clear(clear)
+        if group is not None:
+            assert prepared.visible_surface is not None
             buffer.scissor(within)
             buffer.draw(
-                self._mask_program(),
+                prepared.visible_surface.program,
                 self._passes.triangle,
-                self._mask_group,
-                _MARK,
+                group,
+                _WHERE_SOMETHING_IS if clear is None else _OVER_THE_REST,
             )
-        assert prepared.visible_surface is not None
-        buffer.bind_framebuffer(self._targets.scene)
-        buffer.scissor(area)
-        buffer.clear(clear)
-        buffer.scissor(within)
-        buffer.draw(
-            prepared.visible_surface.program,
-            self._passes.triangle,
-            group,
-            _WHERE_SOMETHING_IS,
-        )
 
     def _mask_program(self) -> Handle:
         return self._passes.program(
-            "visible_pixels.frag", {**_NEAR, "MOKA_VISIBILITY": self._samples}
+            "visible_pixels.frag", {**_NEAR, "MOKA_VISIBILITY": self.samples}
         )
 
     def _bind_group(self, prepared: "PreparedScene", texels: int) -> Handle:
@@ -251,7 +254,7 @@ class VisibilityBuffer:
                 TextureDescriptor(
                     pixels,
                     *self._targets.size,
-                    samples=self._samples,
+                    samples=self.samples,
                     label="visibility",
                 )
             )

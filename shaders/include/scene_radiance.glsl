@@ -1,11 +1,20 @@
 // The radiance of a pixel: the mean of its MOKA_SAMPLES samples of the scene,
 // in linear light, and with MOKA_SKY the environment behind what they cover.
+// With MOKA_SKY_ALONE none covers anything.
 //
 // The sky has no edges, so one sample a pixel is enough for it; coverage
 // composites in any order (Porter and Duff 1984). A shader of our own, because
 // drivers may compile one for a resolving blit in every process anew.
 
 #include "include/background.glsl"
+
+#ifdef MOKA_SKY_ALONE
+
+vec4 scene_radiance() {
+    return vec4(background_radiance(), 1.0);
+}
+
+#else
 
 #ifdef MOKA_SAMPLES
 uniform sampler2DMS radiance_map;
@@ -31,3 +40,5 @@ vec4 scene_radiance() {
 #endif
     return mean;
 }
+
+#endif

@@ -288,9 +288,12 @@ def test_edges_between_surfaces_are_smooth(device: GraphicsDevice) -> None:
     assert mixed.any()
 
 
+@pytest.mark.parametrize("background", ["environment", (0.1, 0.2, 0.3)])
 @pytest.mark.parametrize("samples", [1, 4])
-def test_only_an_area_is_drawn(device: GraphicsDevice, samples: int) -> None:
-    scene = lit(textured(), background=(0.1, 0.2, 0.3))
+def test_only_an_area_is_drawn(
+    device: GraphicsDevice, samples: int, background: Any
+) -> None:
+    scene = lit(textured(), background=background)
     camera = looking((0, 0, -1), 0.9, (0, 0, 3))
     settings = RenderSettings(samples=samples, shading="visibility")
     renderer = Renderer(device, SIZE, settings)
@@ -333,6 +336,47 @@ def test_settings_may_change_between_frames(
     renderer.close()
     np.testing.assert_array_equal(again, first)
     assert np.abs(first.astype(int) - forward).mean() < 0.5
+
+
+@pytest.mark.parametrize("float_output", [False, True])
+@pytest.mark.parametrize("samples", [1, 4])
+def test_a_frame_shows_nothing_of_the_one_before(
+    device: GraphicsDevice, samples: int, float_output: bool
+) -> None:
+    """Targets that serve again are not cleared where a sky is drawn."""
+    scene = lit(textured(), background="environment")
+    settings = RenderSettings(
+        samples=samples, shading="visibility", float_output=float_output
+    )
+    towards, away = ((0, 0, z) for z in (-1, 1))
+    views = [
+        (looking(towards, 0.9, (0, 0, 3)), "environment", 0.0),
+        (looking(towards, 0.9, (0.8, 0.3, 3)), "environment", 0.0),
+        (looking(away, 0.9, (0, 0, 3)), "environment", 0.0),
+        (looking(towards, 0.9, (-0.8, 0, 4)), "environment", 0.4),
+        (looking(towards, 0.9, (0, 0.5, 3)), (0.1, 0.2, 0.3), 0.0),
+        (looking(towards, 0.9, (0.3, 0, 5)), "transparent", 0.0),
+        (looking(towards, 0.9, (0, 0, 4)), "environment", 0.0),
+        (looking(towards, 0.9, (1.5, 0, 3)), "environment", 0.0),
+    ]
+
+    def picture(renderer: Renderer, view: int) -> list[NDArray[Any]]:
+        camera, scene.background, scene.background_blur = views[view]
+        commands = CommandList()
+        renderer.draw(scene, camera, commands)
+        reads = [renderer.read_radiance(commands)]
+        reads.append(renderer.read_display(commands))
+        device.submit(commands).wait()
+        return [each.data.copy() for each in reads if each.data is not None]
+
+    reused = Renderer(device, SIZE, settings)
+    frames = [picture(reused, view) for view in range(len(views))]
+    reused.close()
+    for view, frame in enumerate(frames):
+        fresh = Renderer(device, SIZE, settings)
+        for read, expected in zip(frame, picture(fresh, view), strict=True):
+            np.testing.assert_array_equal(read, expected)
+        fresh.close()
 
 
 def test_scenes_may_change_between_frames(device: GraphicsDevice) -> None:

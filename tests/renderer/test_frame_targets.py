@@ -8,10 +8,12 @@ import pytest
 from moka.backend.protocol import BackendInfo
 from moka.backend.recording_backend import RecordingBackend
 from moka.commands.command_list import CommandList
+from moka.commands.commands import Clear
 from moka.commands.descriptors import TextureDescriptor
 from moka.core.encoded_image import EncodedImage
 from moka.core.png import encode_png
 from moka.graphics.device import GraphicsDevice
+from moka.lighting.environment import Environment
 from moka.material.material import Material, Texture
 from moka.model import cube
 from moka.model.assemble import model_of
@@ -85,3 +87,30 @@ def test_targets_are_made_when_images_are_decoded(shading: str) -> None:
         labels = {each.label for each in made}
         assert ("visibility" in labels) == (shading == "visibility")
         renderer.close()
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_frames_after_the_first_draw_the_sky_apart(samples: int) -> None:
+    """And clear nothing for it: one picture would compile more than it gains.
+
+    The depth of what is seen tells where the sky is.
+    """
+    backend = RecordingBackend(INFO)
+    scene = Scene()
+    scene.environment = Environment(np.ones((2, 4, 3), np.float32))
+    scene.add(model_of([(cube(), None, np.eye(4))]))
+    camera = Camera()
+    camera.transform.translate((0, 0, 3))
+    draws, clears = [], []
+    with GraphicsDevice(lambda: backend) as device:
+        settings = RenderSettings(samples=samples, shading="visibility")
+        renderer = Renderer(device, (8, 8), settings)
+        for _ in range(3):
+            commands = CommandList()
+            renderer.draw(scene, camera, commands)
+            draws.append(device.submit(commands).wait().gl_draws)
+            steps = backend.frames[-1].steps
+            clears.append(sum(isinstance(each, Clear) for each in steps))
+        renderer.close()
+    assert draws == [draws[0], draws[0] + 1, draws[0] + 1]
+    assert clears == [clears[0], clears[0] - 1, clears[0] - 1]
