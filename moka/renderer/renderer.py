@@ -46,9 +46,10 @@ from moka.renderer.material_pool import MaterialPool
 from moka.renderer.progressive import Progressive
 from moka.renderer.scene_pass import ScenePass
 from moka.renderer.scene_preparation import ScenePreparation
-from moka.renderer.screen_passes import ScreenPart, ScreenPasses, Sky
+from moka.renderer.screen_passes import ScreenPart, ScreenPasses
 from moka.renderer.settings import RenderSettings
 from moka.renderer.shared_pools import SharedPools
+from moka.renderer.sky import Sky
 from moka.renderer.sky_map import SkyMap
 from moka.renderer.targets import Targets
 from moka.renderer.visibility_choice import VisibilityChoice

@@ -1,9 +1,6 @@
 """The passes over the whole picture: what is behind, and the display."""
 
-import math
 from collections.abc import Sequence
-from functools import cache
-from typing import Any
 
 import numpy as np
 from msgspec import Struct
@@ -30,30 +27,11 @@ from moka.graphics.uniform_block import (
     ParameterType,
     UniformLayout,
 )
-from moka.lighting.environment import Sun
-from moka.lighting.environment_maps import CUBE_SAMPLER, MAP_SAMPLER
+from moka.lighting.environment_maps import CUBE_SAMPLER
+from moka.renderer.sky import MOST_DISCS, Sky, background_layout
 from moka.renderer.targets import Targets
-from moka.renderer.view import View
 
-__all__ = ["ScreenPart", "ScreenPasses", "Sky"]
-
-# Discs of suns that a sky shows; a map may show any number.
-MOST_DISCS = 64
-
-
-@cache
-def _background(discs: int) -> UniformLayout:
-    parameters = [
-        Parameter("direction_from_clip", ParameterType.MAT4),
-        Parameter("parameters", ParameterType.VEC4),
-    ]
-    if discs:
-        parameters += [
-            Parameter("sun_discs", ParameterType.VEC4, discs),
-            Parameter("sun_radiances", ParameterType.VEC4, discs),
-        ]
-    return UniformLayout("Background", tuple(parameters))
-
+__all__ = ["ScreenPart", "ScreenPasses"]
 
 _TONE_MAP = UniformLayout(
     "ToneMap",
@@ -82,79 +60,6 @@ class ScreenPart(Struct, frozen=True):
     has_sky: bool
 
 
-class Sky:
-    """What is seen of an environment by one camera.
-
-    ``rotation`` is in radians about +Y; a ``float_target`` can hold any
-    radiance, others what half floats can. ``suns`` are drawn as discs, the
-    first 64 of them, with edges for a picture of ``height`` pixels; they are
-    not in the map. With ``cube``, prefiltered in so many ``levels``, it is
-    seen as a surface of roughness ``blur`` reflects it.
-    """
-
-    def __init__(
-        self,
-        environment_map: Handle,
-        view: View,
-        *,
-        rotation: float,
-        intensity: float,
-        float_target: bool,
-        suns: Sequence[Sun] = (),
-        height: int = 1,
-        cube: Handle | None = None,
-        levels: int = 1,
-        blur: float = 0.0,
-    ) -> None:
-        self.binding = TextureBinding(
-            "environment_map", environment_map, MAP_SAMPLER
-        )
-        self.defines = {"MOKA_SKY": 1}
-        if float_target:
-            self.defines["MOKA_FLOAT_TARGET"] = 1
-        level = angle = 0.0
-        if cube is not None:
-            self.defines["MOKA_BLURRED_SKY"] = 1
-            self.binding = TextureBinding("specular_cube", cube, CUBE_SAMPLER)
-            # As lighting.glsl has specular_level and sun_weight; the angle
-            # is the width of such a lobe.
-            level = (levels - 1) * blur * (2.0 - blur)
-            if level < 1.0:
-                level = level**4 * (3.0 - 2.0 * level**2)
-            suns = [
-                replace(sun, irradiance=_scaled(sun.irradiance, level))
-                if sun.in_map and level < 1.0
-                else sun
-                for sun in suns
-            ]
-            angle = blur**2
-        values: dict[str, Any] = {
-            "direction_from_clip": view.direction_from_clip(rotation),
-            "parameters": (intensity, level, 2.0 / height, angle),
-        }
-        suns = suns[:MOST_DISCS]
-        if suns:
-            self.defines["MOKA_SUN_DISCS"] = len(suns)
-            # A point would have no radiance that could be drawn.
-            radii = [max(sun.angular_radius, 1e-5) for sun in suns]
-            values["sun_discs"] = [
-                (*sun.direction, radius)
-                for sun, radius in zip(suns, radii, strict=True)
-            ]
-            values["sun_radiances"] = [
-                (*np.divide(sun.irradiance, math.pi * math.sin(radius) ** 2), 0)
-                for sun, radius in zip(suns, radii, strict=True)
-            ]
-        self.block = _background(len(suns)).pack(values)
-
-
-def _scaled(
-    irradiance: tuple[float, float, float], by: float
-) -> tuple[float, float, float]:
-    red, green, blue = irradiance
-    return by * red, by * green, by * blue
-
-
 class ScreenPasses:
     """Draws the environment behind the scene, and the display from it."""
 
@@ -164,7 +69,7 @@ class ScreenPasses:
         self._device = device
         self._passes = passes
         self._groups: dict[BindGroupDescriptor, Handle] = {}
-        self._background = self._buffer(_background(MOST_DISCS))
+        self._background = self._buffer(background_layout(MOST_DISCS))
         self._sky_block = UniformBinding("Background", self._background)
         self._tone_map = self._buffer(_TONE_MAP)
 

@@ -5,7 +5,7 @@ from moka.graphics.device import GraphicsDevice
 from moka.lighting.environment import Environment
 from moka.lighting.environment_maps import upload_map
 from moka.renderer.light_sources import LightSources
-from moka.renderer.screen_passes import Sky
+from moka.renderer.sky import Sky
 from moka.renderer.view import View
 from moka.scene.scene import Scene
 
