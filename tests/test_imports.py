@@ -108,3 +108,20 @@ def test_msgspec_does_without_typing_extensions() -> None:
         "assert sys.modules['typing_extensions'] is typing_extensions"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_msgspec_that_insists_gets_typing_extensions(tmp_path: Path) -> None:
+    pytest.importorskip("typing_extensions")
+    package = tmp_path / "msgspec"
+    package.mkdir()
+    text = "import typing_extensions\ninsists = True"
+    (package / "__init__.py").write_text(text, encoding="utf-8")
+    code = (
+        "import sys\n"
+        f"sys.path.insert(0, {str(tmp_path)!r})\n"
+        "from moka.cli.render import _import_msgspec\n"
+        "_import_msgspec()\n"
+        "import msgspec\n"
+        "assert msgspec.insists"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
